@@ -6,11 +6,11 @@
 PATINA_BUILD_PACKAGES="g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libopenmesh-dev
   nlohmann-json3-dev libssl-dev libusb-1.0-0-dev libvtk9-qt-dev qtbase5-dev
   libopenimageio-dev libopencv-contrib-dev libopencv-videoio-dev libavformat-dev
-  libceres-dev dpkg-dev file"
+  libceres-dev libcairo2-dev libexpat1-dev libminizip-dev zlib1g-dev dpkg-dev file"
 # For a machine without a display.
 PATINA_HEADLESS_PACKAGES="xvfb xauth libgl1-mesa-dri"
 PATINA_TEST_PACKAGES="$PATINA_HEADLESS_PACKAGES libgtest-dev libgmock-dev libbenchmark-dev
-  libxcb-xtest0-dev openbox dbus-daemon clang libclang-rt-dev git python3 zsh fish umockdev"
+  libxcb-xtest0-dev openbox dbus-daemon clang libclang-rt-dev git python3 zsh fish umockdev poppler-utils"
 # Only for the comparison with other programs; the tests pass without them.
 PATINA_PEER_PACKAGES="libopenvdb-dev libembree-dev libapriltag-dev"
 # For checking the Debian package.

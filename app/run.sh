@@ -59,9 +59,9 @@ if [ ! -f "$build_folder/build.ninja" ]; then
   need_disk "$build_folder" 1100
   configure "$build_folder" -DBUILD_TESTING=OFF -DPATINA_WERROR="${PATINA_WERROR:-OFF}"
 fi
-# Without a display and a file no window is opened, and none is built: a fifth of the time.
+# Without a display no window is opened, and none is built: a fifth of the time.
 targets="patina patina-gui"
-[ -n "${DISPLAY:-}" ] || [ $# -gt 0 ] || targets=patina
+[ -n "${DISPLAY:-}" ] || targets=patina
 # shellcheck disable=SC2086 # a list of words
 build "$build_folder" $targets
 bin=$build_folder/bin
@@ -83,22 +83,28 @@ if [ "$named" = no ]; then
   "$bin/patina" model dinosaur -o "$out/dinosaur.ply"
   set -- "$out/dinosaur.ply"
 fi
-say "No display: the same session without a window"
-in_window "$bin/patina-gui" --tour "$out" "$@"
+say "No display: what the object is, how it feels and what it looks like"
 "$bin/patina" info "$@" --json >"$out/info.json"
-# The tour's log begins with the columns of a tip path: felt again, tick by tick, as a table.
-"$bin/patina" feel "$@" --path "$out/feel.csv" -o "$out/forces.csv" --json >"$out/feel.json"
+# A tip that goes down from above the object to its middle within a second.
+awk '{ text = text $0 }
+  END {
+    gsub(/[ \t]/, "", text)
+    print "t [s],x [m],y [m],z [m]"
+    if (!match(text, /"bounds":\[\[[^]]*\],\[[^]]*\]/)) exit
+    bounds = substr(text, RSTART + 10, RLENGTH - 10)
+    gsub(/[][]/, "", bounds)
+    split(bounds, b, ",")
+    for (i = 0; i <= 1000; ++i)
+      printf "%g,%g,%g,%g\n", i / 1000, (b[1] + b[4]) / 2, (b[2] + b[5]) / 2,
+        b[6] + (b[6] - b[3]) * (0.1 - 0.6 * i / 1000)
+  }' "$out/info.json" >"$out/tip.csv"
+"$bin/patina" feel "$@" --path "$out/tip.csv" -o "$out/forces.csv" --json >"$out/feel.json"
 in_window "$bin/patina" render "$@" -o "$out/picture.png"
 
 say "Done. Pictures and tables are in $out"
 cat <<TEXT
-  window.png  feel.png  slice.png  nodes.png   the window before and during the touch
-  offset.png  magnet.png                       the tip held off by an offset; a magnet's band
-  stability.png  objects.png                   where a device would buzz; two objects as one
-  picture.png                                  the object alone
-  feel.csv                                     one row a servo tick of the session
-  forces.csv  feel.json                        the same path felt again in simulated time, with the
-                                               scene as it was opened: without the friction that
-                                               the tour adds half way
-  info.json                                    the mesh, its defects, the stages and their costs
+  picture.png            the object
+  info.json              the mesh, its defects, the stages and their costs
+  tip.csv                a tip that goes down to the object's middle
+  forces.csv  feel.json  what it feels, one row a servo tick
 TEXT

@@ -45,7 +45,7 @@ fail() {
   failed=1
 }
 for file in bin/patina bin/patina-gui include/patina_device.h lib/udev/rules.d/70-patina.rules \
-  lib/patina/patina_images.so share/applications/local.patina.Patina.desktop \
+  lib/patina/patina_images.so lib/patina/patina-udev share/applications/local.patina.Patina.desktop \
   share/bash-completion/completions/patina share/doc/patina/changelog.gz \
   share/doc/patina/copyright share/doc/patina/examples/example_device.c \
   share/fish/vendor_completions.d/patina.fish share/icons/hicolor/scalable/apps/patina.svg \

@@ -3,7 +3,7 @@
 #   tests/run.sh                        all tests, then a short form of what follows
 #   tests/run.sh --sanitize address     unit and stability tests under ASan and UBSan
 #   tests/run.sh --sanitize thread      hand-over and servo tests under TSan
-#   tests/run.sh --fuzz [SECONDS]       each reader's fuzzer, 20 s each unless told (in all tests 5,
+#   tests/run.sh --fuzz [SECONDS]       each reader's fuzzer, 20 s each unless told (in all tests 10,
 #                                       and 20 for what comes over a wire)
 #   tests/run.sh --quick                the tests alone, without sanitizers and fuzzers
 #   tests/run.sh --benchmarks           the long form of the benchmarks and of the contact course
@@ -32,7 +32,11 @@ run_tests() {
   build "$build_folder"
   say "All tests"
   # One more than there are processors: many a test waits for a hand or a clock.
-  ctest --test-dir "$build_folder" --output-on-failure -j "$(($(nproc) + 1))" </dev/null
+  if ! ctest --test-dir "$build_folder" --output-on-failure -j "$(($(nproc) + 1))" </dev/null; then
+    # A clock that was measured beside other tests may be wrong; a defect fails alone, too.
+    say "Those that failed, again and one at a time"
+    ctest --test-dir "$build_folder" --output-on-failure --rerun-failed </dev/null
+  fi
 }
 
 # LeakSanitizer needs ptrace, which some containers forbid.
@@ -63,7 +67,7 @@ build_address() { # short or full
 run_address() { # short or full
   say "Address and undefined-behaviour sanitizers"
   local leaks folder most='*'
-  [ "$1" = full ] || most='-*Signs*:Plate*:SampleLayer*:Redistance*:MergeFields*'
+  [ "$1" = full ] || most='-*Signs*:Plate*:SampleLayer*:Redistance*:MergeFields*:LooseTriangles*:InnerFaces*'
   leaks=$(leak_option "$build_folder-asan/bin/core_tests")
   for folder in $(address_folders "$1"); do
     ASAN_OPTIONS=$leaks:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
@@ -208,7 +212,7 @@ all)
   logs=$(mktemp -d)
   (run_thread) >"$logs/thread" 2>&1 &
   thread=$!
-  (run_fuzz 5) >"$logs/fuzz" 2>&1 &
+  (run_fuzz 10) >"$logs/fuzz" 2>&1 &
   fuzz=$!
   run_and_note run_address short
   wait $thread || failed="$failed run_thread"

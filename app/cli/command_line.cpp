@@ -1,14 +1,16 @@
 #include "app/cli/command_line.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <iterator>
 #include <map>
 #include <sstream>
 
 #include "app/cli/commands/commands.h"
+#include "app/cli/framework/former_options.h"
+#include "app/cli/framework/suggestion.h"
 #include "app/cli/input/input_files.h"
-#include "app/cli/input/suggestion.h"
 #include "app/cli/output/help.h"
 #include "core/error.h"
 #include "core/output_target.h"
@@ -20,7 +22,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// The input that the next word is for: the first that may still be given, else the last.
+// Returns the input for the next word: the first that accepts another value, else the last.
 const Argument* nextInput(const Command& command, const std::map<std::string, Words>& given) {
   const Argument* last = nullptr;
   for (const Argument& argument : command.arguments) {
@@ -38,7 +40,7 @@ Words namesOf(const Argument& argument) {
   return words;
 }
 
-// The option of that name; Error if the command has none.
+// Returns the option with that name; throws Error if the command has none.
 const Argument& optionNamed(const Command& command, const std::string& name) {
   Words known;
   for (const Argument& argument : command.arguments) {
@@ -63,19 +65,17 @@ void give(const Argument& argument, const std::string& value) {
   }
 }
 
-// An argument that was given, and with which values.
 using Given = std::map<std::string, Words>;
 
-// As of a shell's variable that is not set.
+// A shell passes "" for a variable that is not set.
 void requireSome(const Argument& argument, const std::string& word, const std::string& see) {
   if (word.empty()) throw Error(argument.name() + ": '' is no value; see " + see);
 }
 
-// Fills in the command's options from the words after its name.
 Given parse(const Command& command, const Words& words) {
   const std::string see = "patina " + command.name + " --help";
   Given given;
-  bool only_inputs = false; // after "--"
+  bool only_inputs = false; // set by "--"
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
     if (!only_inputs && word == "--") {
@@ -93,7 +93,7 @@ Given parse(const Command& command, const Words& words) {
       give(*input, word);
       continue;
     }
-    // "--name=value" and "-ovalue" carry their value with them.
+    // "--name=value" and "-ovalue" contain the value.
     const bool is_long = word[1] == '-';
     const std::size_t end = is_long ? word.find('=') : 2;
     const std::string name = word.substr(0, end);
@@ -115,7 +115,7 @@ Given parse(const Command& command, const Words& words) {
   return given;
 }
 
-// Of the words: what is read and written, and what was said more often than it counts.
+// Checks input and output files, and warns of options given more often than they count.
 void checkFiles(const Command& command, const Given& given, Console& console) {
   std::size_t read = 0, written = 0;
   for (const Argument& argument : command.arguments) {
@@ -142,18 +142,29 @@ void checkFiles(const Command& command, const Given& given, Console& console) {
     throw Error("'-' is given " + std::to_string(written) + " times: standard output is one");
 }
 
-// The files and folders that the words name to be read.
 std::vector<std::filesystem::path> filesRead(const Command& command, const Given& given) {
   std::vector<std::filesystem::path> files;
   for (const Argument& argument : command.arguments) {
     const auto found = given.find(argument.name());
     if (found == given.end()) continue;
-    const Words& values = found->second; // only the last counts, unless it may be repeated
+    // only the last counts, unless the argument may be repeated
+    const Words& values = found->second;
     for (auto value = argument.isRepeated() ? values.begin() : values.end() - 1;
          value != values.end(); ++value)
       std::ranges::copy(argument.set.filesIn(*value), std::back_inserter(files));
   }
   return files;
+}
+
+// It becomes part of a journal's record and of messages.
+std::string requireIntent(const std::string& word) {
+  const bool plain =
+      word.size() <= 100 && std::ranges::all_of(word, [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
+      });
+  if (!plain)
+    throw Error("--intent: '" + word + "': use letters, digits, '-', '_' and '.', up to 100");
+  return word;
 }
 
 int run(const Words& words, Console& console) {
@@ -162,7 +173,7 @@ int run(const Words& words, Console& console) {
   const auto asked = [&](const char* name) {
     return std::find(words.begin(), only_inputs, name) != only_inputs;
   };
-  // Asking for help must work however incomplete or wrong the rest of the line is.
+  // Help must work even if the rest of the line is incomplete or wrong.
   if (asked("--help") || asked("-h")) {
     const auto about = std::ranges::find(commands, words.front(), &Command::name);
     console.print(about == commands.end() ? programHelp(commands) : commandHelp(*about));
@@ -179,7 +190,8 @@ int run(const Words& words, Console& console) {
   const Given given = parse(command, {words.begin() + 1, words.end()});
   checkFiles(command, given, console);
   for (const auto& [name, values] : given) console.given.insert(name);
-  // Before the command runs, because it may change what it reads.
+  if (given.contains("--intent")) console.intent = requireIntent(given.at("--intent").back());
+  // Before the command runs, because it may change its inputs.
   if (console.json || given.contains("--report"))
     console.inputs = describeInputs(filesRead(command, given));
   return command.run(console);
@@ -191,11 +203,11 @@ int runCommandLine(int argc, char** argv) {
   try {
     Console console;
     try {
-      return run(Words(argv + 1, argv + argc), console);
+      return console.finish(run(inPresentSpelling(Words(argv + 1, argv + argc)), console));
     } catch (const std::exception& error) {
-      return console.fail(error);
+      return console.finish(console.fail(error));
     }
-  } catch (const std::exception& error) { // not even that much memory
+  } catch (const std::exception& error) { // not enough memory even for the message
     std::fprintf(stderr, "patina: %s\n", error.what());
     return kBadInput;
   }

@@ -1,9 +1,9 @@
-// The words a person typed, turned into one command's run.
+// Parses the command line and runs one command.
 #pragma once
 
 namespace patina::cli {
 
-// What goes wrong is one line on stderr. Returns the exit code.
+// Prints errors as one line on stderr. Returns the exit code.
 int runCommandLine(int argc, char** argv);
 
 } // namespace patina::cli

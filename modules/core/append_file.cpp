@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,13 +10,10 @@
 namespace patina {
 namespace {
 
-// Some network file systems have no locks; a person who works there alone must not be kept out.
-bool lock(int fd) {
-  int result;
-  do {
-    result = ::flock(fd, LOCK_EX | LOCK_NB);
-  } while (result != 0 && errno == EINTR);
-  return result == 0 || errno != EWOULDBLOCK;
+int openedToAppend(const std::string& name) {
+  const int fd = openRetrying(name.c_str(), O_RDWR);
+  if (fd < 0) throw DiskError(name, "cannot be opened for writing: " + reason(errno));
+  return fd;
 }
 
 } // namespace
@@ -33,12 +29,8 @@ void createFile(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 AppendFile::AppendFile(const std::filesystem::path& path)
-    : name_(path.string()), file_(openRetrying(name_.c_str(), O_RDWR)) {
-  if (file_.get() < 0) throw DiskError(name_, "cannot be opened for writing: " + reason(errno));
-  if (!lock(file_.get())) {
-    throw FileError(name_, 0,
-                    "another program is writing it; close that one, or save to another folder");
-  }
+    : name_(path.string()), file_(openedToAppend(name_)),
+      lock_(file_.get(), path, FileLock::Wait::no) {
   struct stat info {};
   if (::fstat(file_.get(), &info) != 0)
     throw FileError(name_, 0, "cannot be read: " + reason(errno));
@@ -69,7 +61,7 @@ void AppendFile::truncate(std::uint64_t size) {
 
 void AppendFile::append(std::string_view bytes) {
   struct stat info {};
-  // What is written to a file that no folder names is gone with this program.
+  // Data written to an unlinked file would be lost when this program ends.
   if (::fstat(file_.get(), &info) == 0 && info.st_nlink == 0)
     throw FileError(name_, 0, "was removed or replaced by another program; save to another folder");
   if (longer_) truncate(size_);
@@ -86,7 +78,12 @@ void AppendFile::append(std::string_view bytes) {
   if (!done) {
     const int code = errno;
     longer_ = !cut(size_);
-    throw DiskError(name_, what + reason(code));
+    const bool there = longer_ && ::fstat(file_.get(), &info) == 0 &&
+                       static_cast<std::uint64_t>(info.st_size) > size_;
+    throw DiskError(name_, what + reason(code) +
+                               (there ? "; what was written of it cannot be taken back: look "
+                                        "whether it is there before you try again"
+                                      : ""));
   }
   size_ += bytes.size();
 }

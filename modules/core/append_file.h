@@ -1,4 +1,4 @@
-// A file that grows by whole pieces, and by one program at a time.
+// A file that one program at a time extends by complete records.
 #pragma once
 
 #include <cstdint>
@@ -7,26 +7,26 @@
 #include <string_view>
 
 #include "core/descriptor.h"
+#include "core/file_lock.h"
 
 namespace patina {
 
-// A file that is new, without waiting for the disk: a loss of power may take it, the end of the
-// program does not. Where it fails nothing is left of it. Throws FileError, also if it exists.
+// Creates a file without waiting for the disk: it survives the end of the program, but a power loss
+// may remove it. Removes the file again on failure. Throws FileError, also if the file exists.
 void createFile(const std::filesystem::path& path, std::string_view bytes);
 
-// Holds a lock on the file for as long as it lives.
+// Holds a lock on the file while the object exists.
 class AppendFile {
  public:
-  // The file must exist. Throws FileError: missing, or locked by another program (or another
-  // AppendFile of this one).
+  // Throws FileError if the file is missing or locked by another program or another AppendFile.
   explicit AppendFile(const std::filesystem::path& path);
 
   std::string content() const;
   std::uint64_t size() const { return size_; }
-  void truncate(std::uint64_t size); // on disk when it returns; throws FileError
-  // On disk when it returns. On failure throws FileError, and the file ends where it ended before;
-  // if even that is refused, the next append() tries it again first. A file that was removed or
-  // replaced meanwhile is a failure.
+  void truncate(std::uint64_t size); // flushed to disk on return; throws FileError
+  // Flushes the bytes to disk. On failure, also if the file was removed or replaced, throws
+  // FileError and restores the previous length; if the disk refuses even that, the message says so
+  // and the next append() tries again.
   void append(std::string_view bytes);
 
  private:
@@ -34,8 +34,9 @@ class AppendFile {
 
   std::string name_;
   Descriptor file_;
+  FileLock lock_;
   std::uint64_t size_ = 0;
-  bool longer_ = false; // a piece that failed could not be cut off
+  bool longer_ = false; // a failed append could not be cut off
 };
 
 } // namespace patina

@@ -28,7 +28,7 @@ CsvReader::Source sourceOf(const std::filesystem::path& path) {
   };
 }
 
-// Passes on UTF-8 bytes; UTF-16, which its byte order mark tells, is converted.
+// Passes UTF-8 bytes on and converts UTF-16, which starts with a byte order mark.
 CsvReader::Source utf8Of(CsvReader::Source source) {
   enum class Encoding { unknown, bytes, little, big };
   return [source = std::move(source), raw = std::string(),
@@ -51,7 +51,7 @@ CsvReader::Source utf8Of(CsvReader::Source source) {
       raw.clear();
     }
     std::size_t count = 0;
-    while (count == 0 && append(capacity / 3)) { // a unit becomes three bytes at most
+    while (count == 0 && append(capacity / 3)) { // a code unit becomes at most three bytes
       const std::size_t low = encoding == Encoding::little ? 0 : 1;
       std::size_t at = 0;
       for (; at + 1 < raw.size(); at += 2) {

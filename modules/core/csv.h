@@ -19,8 +19,8 @@ struct CsvTable {
   std::vector<std::vector<double>> rows; // each as long as columns
 };
 
-// A table read a row at a time, in memory that does not grow with it; see CsvParser. Text is UTF-8,
-// or UTF-16 with a byte order mark; a line of more than 1 MB is refused. All throw FileError.
+// Reads a table row by row in constant memory; see CsvParser. The text is UTF-8, or UTF-16 with a
+// byte order mark. Lines of more than 1 MB are rejected. All members throw FileError.
 class CsvReader {
  public:
   // Fills a buffer and returns the number of bytes; 0 at the end.
@@ -29,12 +29,12 @@ class CsvReader {
   CsvReader(const std::filesystem::path& path, const CsvColumns& columns);
   CsvReader(Source source, std::string name, const CsvColumns& columns);
 
-  bool next(std::vector<double>& row); // false at the end
-  double fraction() const; // of the file's bytes; 0 where its size is not known (a pipe)
+  bool next(std::vector<double>& row); // returns false at the end
+  double fraction() const; // share of the file's bytes read; 0 if the size is unknown (a pipe)
 
   const std::vector<std::string>& columns() const { return parser_.columns(); }
   bool has(const std::string& column) const { return parser_.has(column); }
-  std::size_t line() const { return parser_.line(); } // of the last row, from 1
+  std::size_t line() const { return parser_.line(); } // number of the last row's line, from 1
   std::string leftOut() const { return parser_.leftOut(); }
   const std::string& firstNotFinite() const { return parser_.firstNotFinite(); }
 
@@ -49,15 +49,15 @@ class CsvReader {
   double bytes_ = 0, size_ = 0;
 };
 
-// Reads a text, which must outlive the source.
+// Reads a text that must outlive the source.
 CsvReader::Source sourceOfText(std::string_view text);
 
-// The whole table: the required columns first, then all others, which must hold numbers too.
+// Reads the whole table: the required columns first, then all others, which must hold numbers too.
 CsvTable readCsv(const std::filesystem::path& path, const std::vector<std::string>& required);
 CsvTable parseCsv(const std::string& text, const std::string& name,
                   const std::vector<std::string>& required);
 
-// A table written a row at a time; an AtomicFile. Numbers read back bit for bit.
+// Writes a table row by row through an AtomicFile. Numbers read back bit for bit.
 class CsvWriter {
  public:
   CsvWriter(const std::filesystem::path& path, const std::vector<std::string>& columns);
@@ -69,7 +69,7 @@ class CsvWriter {
   std::string text_; // not yet in the file
 };
 void writeCsv(const std::filesystem::path& path, const CsvTable& table);
-// Lines of such a table with their ends.
+// Lines of such a table, including the line ends.
 std::string csvHeader(const std::vector<std::string>& columns);
 std::string csvRow(const std::vector<double>& row);
 

@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) + 1 - first);
 }
 
-// Splits at separators outside of quotes, and takes cells out of theirs.
+// Splits at separators outside quotes and removes the quotes.
 std::vector<std::string> cellsOf(std::string_view line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -47,7 +47,7 @@ std::string joined(const std::vector<std::string>& names, const char* between) {
   return text;
 }
 
-// A message stays one readable line whatever the file holds.
+// Replaces control characters, so that a message stays one readable line.
 std::string printableText(std::string_view text, std::size_t length = 40) {
   std::string out;
   for (const char c : text.substr(0, length))
@@ -64,11 +64,11 @@ const char* nameOfSeparator(char separator) {
 }
 
 struct Heading {
-  std::string name;                // in lower case
-  std::optional<std::string> unit; // none without brackets
+  std::string name;                // lower case
+  std::optional<std::string> unit; // absent without brackets
 };
 
-// "T (ms)" is t in ms.
+// "T (ms)" has the name "t" and the unit "ms".
 Heading headingIn(std::string_view text) {
   Heading heading;
   const std::size_t open = text.find_last_of("[(");
@@ -83,7 +83,7 @@ Heading headingIn(std::string_view text) {
   return heading;
 }
 
-// 1.#IND, -1.#QNAN, 1.#INF: how Microsoft's C library writes what is no number.
+// Spellings of NaN and infinity by Microsoft's C library: 1.#IND, -1.#QNAN, 1.#INF.
 std::optional<double> microsoftNumber(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
@@ -104,11 +104,14 @@ CsvParser::CsvParser(std::string name, CsvColumns columns)
   found_.assign(columns_.size(), false);
 }
 
-void CsvParser::skipHeader() {
-  ++line_;
+void CsvParser::assumeHeader(std::string_view line) {
   separator_ = ',';
-  for (std::size_t i = 0; i < wanted_.required.size(); ++i)
+  const std::size_t cells = 1 + static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+  const bool all = cells == found_.size();
+  for (std::size_t i = 0; i < (all ? found_.size() : wanted_.required.size()); ++i) {
     cells_.push_back({columns_[i], static_cast<int>(i)});
+    found_[i] = true;
+  }
   has_header_ = true;
 }
 
@@ -142,8 +145,8 @@ bool CsvParser::take(std::string_view line, std::vector<double>& row) {
 }
 
 // Sets the target of the cell that holds the wanted column: the one with the same name and unit,
-// else the only one in a unit of the same dimension. Returns false without one; `cause` then says
-// why a cell of that name is none.
+// else the only one with a unit of the same dimension. Returns false if there is none; `cause` then
+// explains why a cell of that name does not fit.
 bool CsvParser::findColumn(std::size_t wanted, std::vector<Cell>& cells, std::string& cause) const {
   const std::string& name = columns_[wanted];
   const Heading heading = headingIn(name);
@@ -180,16 +183,16 @@ bool CsvParser::findColumn(std::size_t wanted, std::vector<Cell>& cells, std::st
   return true;
 }
 
-// Returns false where the line comes before the header.
+// Returns false if the line precedes the header.
 bool CsvParser::readHeader(std::string_view line) {
   if (line.empty()) return false;
-  if (line.starts_with("sep=") && line.size() <= 5) { // as spreadsheets write it
+  if (line.starts_with("sep=") && line.size() <= 5) { // spreadsheets write this line
     separator_ = line.size() == 5 ? line[4] : '\t';
     if (separator_ != ';' && separator_ != '\t' && separator_ != ',')
       refuse(inQuotes(line) + " is no known separator: write a semicolon, a tab or a comma");
     return false;
   }
-  const bool comment = line.front() == '#';
+  const bool comment = line.front() == '#' || line.front() == '%';
   const std::string_view text = comment ? trimmed(line.substr(1)) : line;
   char separator = separator_;
   for (const char candidate : {';', '\t', ','})
@@ -249,7 +252,7 @@ std::string CsvParser::leftOut() const {
 void CsvParser::refuseCount(std::string_view line, std::size_t count) const {
   const bool has_semicolon = line.find(';') != std::string_view::npos;
   if (separator_ == ',' && (has_semicolon || count == 2 * cells_.size())) refuse(kDecimalComma);
-  // A whole number among them, "0,5,1,2,5", hides that the others were broken in two.
+  // Whole numbers in the row ("0,5,1,2,5") keep the count from being exactly twice the columns.
   const bool broken =
       separator_ == ',' && count > cells_.size() && line.find('.') == std::string_view::npos;
   refuse(std::to_string(count) + " values where the header names " + std::to_string(cells_.size()) +
@@ -268,7 +271,7 @@ void CsvParser::set(std::vector<double>& row, std::size_t column, double value,
   row[static_cast<std::size_t>(cell.target)] = value;
 }
 
-// The decimal sign is the same in a whole table, so that "1,234" is never taken for thousands.
+// The decimal sign is the same in the whole table, so "1,234" is never read as thousands.
 double CsvParser::numberIn(std::string_view text, std::size_t column, bool may_have_comma) {
   const auto refuseNumber = [&](const std::string& cause) {
     refuse(printableText(cells_[column].name) + ": " + inQuotes(text) + cause);
@@ -307,7 +310,7 @@ void CsvParser::readRow(std::string_view line, std::vector<double>& row) {
     const char* const begin = at;
     while (read && at < end && isBlank(*at)) ++at;
     double value = 0;
-    bool plain = false; // a number as most programs write it
+    bool plain = false; // a number in the usual spelling
     if (read) {
       const auto [after, code] = std::from_chars(at, end, value);
       plain = code == std::errc{} && (after == end || *after == separator_);

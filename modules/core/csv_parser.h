@@ -1,5 +1,5 @@
-// Rows of a table of numbers from its lines. The header's names decide which column is which, in
-// any order; the separator, the decimal sign and the units follow from the text itself.
+// Parses the rows of a table of numbers. The header names the columns, in any order; the separator,
+// the decimal sign and the units follow from the text itself.
 #pragma once
 
 #include <cstdint>
@@ -10,44 +10,48 @@
 
 namespace patina {
 
-// The columns that a reader asks for, with the units in which it gets them: "t [s]", "qx".
+// Columns that a reader needs, with the units in which it gets them: "t [s]", "qx".
 struct CsvColumns {
   std::vector<std::string> required;
-  std::vector<std::string> optional = {}; // NaN in each row of a table without them
+  std::vector<std::string> optional = {}; // NaN in each row if the table lacks the column
   std::vector<std::string> unread = {};   // belong to the format; leftOut() does not name them
   bool others = false;                    // append all other columns to the row
 };
 
-// Takes one line after the other. A table's separator is a semicolon, a tab or a comma, in this
-// order, whichever its header has first; where that is no comma, numbers may have decimal commas.
-// Cells may be in quotes. Throws FileError with the line, and the column where there is one.
+// Parses one line after another. The separator is the first of semicolon, tab and comma that occurs
+// in the header; unless it is a comma, numbers may have decimal commas. Cells may be quoted. Throws
+// FileError with the line and, if one is at fault, the column.
 class CsvParser {
  public:
   CsvParser(std::string name, CsvColumns columns);
-  // Counts a line in place of the header: the required columns in their order, separated by commas.
-  void skipHeader();
+  // Counts a line that is neither header nor row.
+  void skipLine() { ++line_; }
+  // Does without a header: the required columns, and all optional ones if there are so many in the
+  // line, follow in order and in their units, separated by commas.
+  void assumeHeader(std::string_view line);
 
-  // Returns true if the line is a row, and fills `row`: required, optional, other columns. Before
-  // the header "sep=;" and lines that begin with # are passed over; blank lines are anywhere.
+  // Returns true if the line is a row, and fills `row`: required, optional, other columns. Skips
+  // blank lines and, before the header, "sep=;" and lines that begin with #.
   bool take(std::string_view line, std::vector<double>& row);
 
   bool hasHeader() const { return has_header_; }
-  std::size_t line() const { return line_; } // the number of the last line, from 1
-  const std::vector<std::string>& columns() const { return columns_; } // of a row
-  bool has(const std::string& column) const;                           // an optional one
+  std::size_t line() const { return line_; } // number of the last line, from 1
+  const std::vector<std::string>& columns() const {
+    return columns_;
+  }                                          // columns as `row` holds them
+  bool has(const std::string& column) const; // true if the table has this optional column
 
-  // Says of a text without a header what one must have.
+  // Returns the message for a text without a header.
   std::string emptyText() const;
-  // Names the columns that the table has and no row holds: "a.csv: columns left out: b, c"; empty
-  // if there are none.
+  // Lists the table's columns that are not read, "a.csv: columns left out: b, c", or is empty.
   std::string leftOut() const;
-  // The place of the first value that is NaN or infinite: "line 7: y [m] is 'nan'"; empty if none.
+  // First NaN or infinite value with its place, "line 7: y [m] is 'nan'"; empty if there is none.
   const std::string& firstNotFinite() const { return first_not_finite_; }
 
  private:
   struct Cell {
     std::string name;
-    int target = -1; // index in the row; -1: left out
+    int target = -1; // index in the row; -1: not read
     double multiplier = 1, divisor = 1;
   };
 
@@ -63,8 +67,8 @@ class CsvParser {
   std::string name_;
   CsvColumns wanted_;
   std::vector<std::string> columns_;
-  std::vector<bool> found_; // by wanted column
-  std::vector<Cell> cells_; // by the table's column
+  std::vector<bool> found_; // index: wanted column
+  std::vector<Cell> cells_; // index: column of the table
   std::size_t line_ = 0;
   char separator_ = 0;
   bool has_header_ = false, points_ = false, commas_ = false;

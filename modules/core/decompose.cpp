@@ -13,19 +13,19 @@ SymmetricEigen::SymmetricEigen(const MatrixView& matrix) {
 
 SymmetricSolver::SymmetricSolver(const MatrixView& matrix) : ldlt_(matrix) {}
 
-VecX SymmetricSolver::solve(const VectorView& right) const {
-  return ldlt_.solve(right);
+VecX SymmetricSolver::solve(const VectorView& rhs) const {
+  return ldlt_.solve(rhs);
 }
 
-MatX SymmetricSolver::solveColumns(const MatrixView& right) const {
-  return ldlt_.solve(right);
+MatX SymmetricSolver::solveColumns(const MatrixView& rhs) const {
+  return ldlt_.solve(rhs);
 }
 
 MatX SymmetricSolver::inverse() const {
   return ldlt_.solve(MatX::Identity(ldlt_.rows(), ldlt_.cols()));
 }
 
-double SymmetricSolver::evenness() const {
+double SymmetricSolver::reciprocalCondition() const {
   const double most = ldlt_.vectorD().cwiseAbs().maxCoeff();
   return most > 0 ? ldlt_.vectorD().minCoeff() / most : 0;
 }
@@ -43,15 +43,15 @@ MatX product(const MatrixView& a, const MatrixView& b) {
 }
 
 Svd::Svd(const MatrixView& matrix) {
-  // Divide and conquer would be quicker from some hundred columns on and takes far longer to
-  // compile; 257 by 257 take .17 s.
+  // Divide and conquer would be faster from some hundred columns on, but takes far longer to
+  // compile; 257 by 257 take 0.17 s.
   const Eigen::JacobiSVD<MatX> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   u = svd.matrixU();
   v = svd.matrixV();
   values = svd.singularValues();
 }
 
-Eigen::Quaterniond turnFromTo(const Vec3& from, const Vec3& to) {
+Eigen::Quaterniond rotationFromTo(const Vec3& from, const Vec3& to) {
   return Eigen::Quaterniond::FromTwoVectors(from, to);
 }
 

@@ -20,7 +20,7 @@ int Descriptor::close() {
   if (fd_ < 0) return 0;
   const int result = ::close(fd_);
   fd_ = -1;
-  // Linux has closed it by then; closing again could hit another file.
+  // Linux closes the descriptor even on EINTR; closing it again could close another file.
   return result != 0 && errno == EINTR ? 0 : result;
 }
 
@@ -35,29 +35,29 @@ int openRetrying(const char* path, int flags, mode_t mode) {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kPause{20}; // between two looks at a pipe
+constexpr std::chrono::milliseconds kPause{20}; // poll interval of a pipe
 
-// A copy of its next byte, which stays: bytes, or a writer that has none yet, are an other end.
+// True if the pipe has a writer: copies the next byte, or gets EAGAIN from a silent writer.
 bool hasOtherEnd(int pipe, int copy) {
   const ssize_t copied = ::tee(pipe, copy, 1, SPLICE_F_NONBLOCK);
   return copied > 0 || (copied < 0 && errno == EAGAIN);
 }
 
-// An open that waits for a writer could not be ended by a clock.
-int openPipe(const std::string& name, std::chrono::milliseconds patience) {
+// A blocking open would wait for a writer without a timeout.
+int openPipe(const std::string& name, std::chrono::milliseconds timeout) {
   Descriptor pipe(openRetrying(name.c_str(), O_RDONLY | O_NONBLOCK));
   int copies[2] = {-1, -1};
   if (pipe.get() < 0 || ::pipe2(copies, O_CLOEXEC) != 0) return -1;
   const Descriptor out(copies[0]), in(copies[1]);
-  const auto end = Clock::now() + patience;
+  const auto end = Clock::now() + timeout;
   while (!hasOtherEnd(pipe.get(), in.get())) {
     pollfd wait{pipe.get(), POLLIN, 0};
     ::poll(&wait, 1, static_cast<int>(kPause.count()));
-    if (wait.revents & POLLHUP) break; // somebody came and left
+    if (wait.revents & POLLHUP) break; // a writer connected and closed
     if (Clock::now() > end)
       throw FileError(name, 0,
-                      "is a pipe that nobody writes: nothing came for " +
-                          formatNumber(std::chrono::duration<double>(patience).count()) + " s");
+                      "is a pipe without a writer: no program opened it within " +
+                          formatNumber(std::chrono::duration<double>(timeout).count()) + " s");
   }
   ::fcntl(pipe.get(), F_SETFL, ::fcntl(pipe.get(), F_GETFL) & ~O_NONBLOCK);
   return pipe.release();
@@ -65,13 +65,13 @@ int openPipe(const std::string& name, std::chrono::milliseconds patience) {
 
 } // namespace
 
-int openToRead(const std::filesystem::path& path, std::chrono::milliseconds patience) {
+int openToRead(const std::filesystem::path& path, std::chrono::milliseconds timeout) {
   if (isStandardStream(path)) return ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
   const std::string name = path.string();
   struct stat info {};
   const bool pipe = ::stat(name.c_str(), &info) == 0 && S_ISFIFO(info.st_mode) &&
                     !path.string().starts_with("/dev/") && !path.string().starts_with("/proc/");
-  const int fd = pipe ? openPipe(name, patience) : openRetrying(name.c_str(), O_RDONLY);
+  const int fd = pipe ? openPipe(name, timeout) : openRetrying(name.c_str(), O_RDONLY);
   if (fd >= 0) return fd;
   const int code = errno;
   const std::string cause = "cannot be opened: " + reason(code);
@@ -81,14 +81,14 @@ int openToRead(const std::filesystem::path& path, std::chrono::milliseconds pati
 }
 
 int openStream(const std::string& name) {
-  const auto end = Clock::now() + kPipePatience;
+  const auto end = Clock::now() + kPipeTimeout;
   int fd = openRetrying(name.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK);
   while (fd < 0 && errno == ENXIO && Clock::now() < end) {
     std::this_thread::sleep_for(kPause);
     fd = openRetrying(name.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK);
   }
   if (fd < 0 && errno == ENXIO)
-    throw FileError(name, 0, "is a pipe that nobody reads: nobody came for 5 s");
+    throw FileError(name, 0, "is a pipe without a reader: no program opened it within 5 s");
   if (fd >= 0) ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
   return fd;
 }
@@ -98,7 +98,7 @@ bool syncRetrying(int fd) {
   do {
     result = ::fsync(fd);
   } while (result != 0 && errno == EINTR);
-  // Some file systems cannot sync a folder and say so with EINVAL: nothing more can be done there.
+  // Some file systems cannot sync a folder and return EINVAL; nothing more can be done there.
   return result == 0 || errno == EINVAL;
 }
 
@@ -126,32 +126,28 @@ bool writeAllAt(int fd, std::string_view bytes, std::int64_t offset) {
   return true;
 }
 
-std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t room) {
+std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t capacity) {
   for (;;) {
-    const ssize_t got = ::read(fd, buffer, room);
+    const ssize_t got = ::read(fd, buffer, capacity);
     if (got >= 0) return static_cast<std::size_t>(got);
     if (errno != EINTR) throw DiskError(name, "cannot be read: " + reason(errno));
   }
 }
 
-constexpr std::size_t kMostOfADevice = std::size_t{64} << 20;
+constexpr std::size_t kMaxOfADevice = std::size_t{64} << 20;
 
 std::string readAll(int fd, const std::string& name) {
   struct stat info {};
   if (::fstat(fd, &info) != 0) throw DiskError(name, "cannot be read: " + reason(errno));
   if (S_ISDIR(info.st_mode)) throw FileError(name, 0, "is a folder, not a file");
-  std::string bytes;
-  // One byte more than the size, so that the end is seen without another growth.
-  std::size_t room = info.st_size > 0 ? static_cast<std::size_t>(info.st_size) + 1 : 65536;
+  // One byte more than the size detects the end without another allocation.
+  std::string bytes(info.st_size > 0 ? static_cast<std::size_t>(info.st_size) + 1 : 65536, '\0');
   std::size_t used = 0;
   const bool is_device = S_ISCHR(info.st_mode);
-  for (;;) {
-    if (is_device && used > kMostOfADevice) throw FileError(name, 0, "does not end");
-    bytes.resize(used + room);
-    const std::size_t got = readSome(fd, name, bytes.data() + used, room);
-    used += got;
-    if (got == 0) break;
-    room = std::max<std::size_t>(bytes.size() - used, 65536);
+  for (std::size_t got = 1; got > 0; used += got) {
+    if (is_device && used > kMaxOfADevice) throw FileError(name, 0, "does not end");
+    if (used == bytes.size()) bytes.resize(used + 65536);
+    got = readSome(fd, name, bytes.data() + used, bytes.size() - used);
   }
   bytes.resize(used);
   return bytes;

@@ -1,4 +1,4 @@
-// System calls on files, with what signals interrupt done again. Internal to core's files.
+// System calls on files that retry after signals (EINTR).
 #pragma once
 
 #include <chrono>
@@ -18,13 +18,13 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
-  void reset(int fd) { // of one that is closed
+  void reset(int fd) { // the old descriptor must be closed
     fd_ = fd;
   }
-  int release() { // whose it is from now on
+  int release() { // the caller then owns the descriptor
     return std::exchange(fd_, -1);
   }
-  // A full disk may show only here: 0, or -1 and errno.
+  // Returns 0, or -1 and errno; a full disk may show only here.
   int close();
 
  private:
@@ -32,23 +32,22 @@ class Descriptor {
 };
 
 int openRetrying(const char* path, int flags, mode_t mode = 0);
-// With who is to be at a pipe's other end.
-constexpr std::chrono::milliseconds kPipePatience{5000};
-// Open for reading; "-" is standard input. FileError: missing, a ring of links, a pipe that nobody
-// has opened for writing in time; DiskError: anything else.
-int openToRead(const std::filesystem::path& path,
-               std::chrono::milliseconds patience = kPipePatience);
-// Open for writing what is no file: a device, or a pipe. FileError if nobody has opened the pipe
-// for reading after five seconds; else -1 and errno.
+// Time to wait for another process to open the other end of a pipe.
+constexpr std::chrono::milliseconds kPipeTimeout{5000};
+// Opens for reading; "-" is standard input. Throws FileError if the file is missing, a cycle of
+// links, or a pipe without a writer within the timeout; DiskError otherwise.
+int openToRead(const std::filesystem::path& path, std::chrono::milliseconds timeout = kPipeTimeout);
+// Opens a device or a pipe for writing. Throws FileError if no process opens the pipe for reading
+// within five seconds. Returns -1 and sets errno on other failures.
 int openStream(const std::string& name);
 bool syncRetrying(int fd);
-// false and errno; part of the bytes may then be there.
-bool writeAll(int fd, std::string_view bytes); // where it stands
+// Both return false and set errno on failure; part of the bytes may then be written.
+bool writeAll(int fd, std::string_view bytes); // at the current position
 bool writeAllAt(int fd, std::string_view bytes, std::int64_t offset);
-// Up to `room` bytes, 0 at the end. Throws DiskError(name).
-std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t room);
-// The whole file from its beginning. Throws FileError(name).
+// Reads up to `capacity` bytes and returns their number, 0 at the end. Throws DiskError(name).
+std::size_t readSome(int fd, const std::string& name, char* buffer, std::size_t capacity);
+// Reads from the current position to the end. Throws FileError(name).
 std::string readAll(int fd, const std::string& name);
-std::string reason(int code); // of errno, for people
+std::string reason(int code); // text for an errno value
 
 } // namespace patina

@@ -1,12 +1,11 @@
-// Errors of the disk rather than of what is on it.
+// Errors of the storage itself, as opposed to a file's content.
 #pragma once
 
 #include "core/error.h"
 
 namespace patina {
 
-// The system refused a call on the file (full, damaged, no memory): the file as a whole, and
-// another time it may work.
+// The system refused a call on the whole file (disk full, no memory); a retry may succeed.
 class DiskError : public FileError {
  public:
   DiskError(const std::string& path, const std::string& cause) : FileError(path, 0, cause) {}

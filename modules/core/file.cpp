@@ -9,6 +9,7 @@
 
 #include "core/descriptor.h"
 #include "core/disk_error.h"
+#include "core/ownership.h"
 
 namespace patina {
 namespace {
@@ -16,22 +17,23 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTemporaryEnd = ".tmp";
-constexpr std::int64_t kPart = std::int64_t{4} << 20; // bytes that go to the disk together
+constexpr std::int64_t kPart = std::int64_t{4} << 20; // bytes per write-back request
 
 struct Temporary {
   int fd;
   std::string name;
 };
 
-// Beside the target, because a rename is atomic only within one file system. Created with the
-// permissions that a plain open would give, which mkstemp does not.
+// Creates the file next to the target, because a rename is atomic only within one file system.
+// Unlike mkstemp it uses the permissions of a plain open.
 Temporary createBeside(const std::string& folder, const std::string& filename,
-                       Unfinished& unfinished) {
+                       PartialOutput& unfinished) {
   static std::atomic<unsigned> counter{0};
   for (;;) {
     std::string name = folder + "/." + filename + "." + std::to_string(::getpid()) + "-" +
                        std::to_string(counter.fetch_add(1)) + std::string(kTemporaryEnd);
-    unfinished = Unfinished(name); // before it is there: an end in between leaves none
+    unfinished =
+        PartialOutput(name); // registered first, so that an early process exit removes the file
     const int fd = openRetrying(name.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666);
     const int code = errno;
     if (fd < 0) unfinished.done();
@@ -101,36 +103,46 @@ void AtomicFile::append(std::string_view bytes) {
   }
 }
 
-// Of what is left to commit() the program cannot be ended until it is on the disk.
+// Starts write-back early, to shorten the flush in commit(), which cannot be interrupted.
 void AtomicFile::sendToDisk() {
   if (size_ - sent_ < kPart) return;
   ::sync_file_range(file_.get(), sent_, size_ - sent_, SYNC_FILE_RANGE_WRITE);
   const std::int64_t before = std::max<std::int64_t>(0, sent_ - kPart);
-  if (sent_ > before) // 0 bytes would be all to the file's end
+  if (sent_ > before) // a length of 0 would mean up to the file's end
     ::sync_file_range(file_.get(), before, sent_ - before,
                       SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE |
                           SYNC_FILE_RANGE_WAIT_AFTER);
   sent_ = size_;
 }
 
-void AtomicFile::commit() {
+bool AtomicFile::commit() {
   if (target_.is_stream) {
     if (file_.close() != 0) fail("cannot be written");
-    return;
+    return true;
   }
   if (!syncRetrying(file_.get())) fail("cannot be flushed to disk");
   if (file_.close() != 0) fail("cannot be written");
   const auto rename = [&] { return renameRetrying(temporary_.c_str(), target_.path.c_str()); };
   if (unfinished_.finish(rename) != 0) fail("cannot be replaced");
   temporary_.clear();
-  // Without this the new name may be lost with the power, though the bytes are safe.
-  if (!syncFolder(folder_.c_str())) fail("was written, but its folder cannot be flushed");
+  // The rename was the last step that may fail: nobody could take it back.
+  if (syncFolder(folder_.c_str())) return true;
+  const int code = errno;
+  warnOfOutput(path_ + ": is written, but its folder cannot be flushed (" + reason(code) +
+               "): a power loss soon may undo that");
+  errno = code;
+  return false;
 }
 
-void writeFileAtomically(const fs::path& path, std::string_view bytes) {
+bool writeFileAtomically(const fs::path& path, std::string_view bytes) {
   AtomicFile file(path);
   file.append(bytes);
-  file.commit();
+  return file.commit();
+}
+
+void writeFileDurably(const fs::path& path, std::string_view bytes) {
+  if (!writeFileAtomically(path, bytes))
+    throw DiskError(path.string(), "its folder cannot be flushed to disk: " + reason(errno));
 }
 
 bool isTemporaryFor(std::string_view filename, std::string_view candidate) {
@@ -144,13 +156,14 @@ bool isTemporaryFor(std::string_view filename, std::string_view candidate) {
 
 void makeFolder(const fs::path& folder) {
   std::error_code code;
+  refuseForeignLink(folder, folder);
   if (fs::is_directory(folder, code)) return;
   const fs::path parent = folder.parent_path();
   // "a/b/" has the parent "a/b".
   if (!folder.has_filename()) return makeFolder(parent);
   if (!parent.empty()) makeFolder(parent);
   if (::mkdir(folder.c_str(), 0777) != 0) {
-    const int cause = errno; // before another look changes it
+    const int cause = errno; // is_directory() may change errno
     if (!fs::is_directory(folder, code))
       throw DiskError(folder.string(),
                       "cannot be made a folder: " +

@@ -8,20 +8,19 @@
 
 #include "core/descriptor.h"
 #include "core/output_target.h"
-#include "core/unfinished.h"
+#include "core/partial_output.h"
 
 namespace patina {
 
-// The whole file as bytes; "-" is standard input. Throws FileError (missing, a folder, unreadable,
-// a pipe that nobody writes).
+// Reads the whole file as bytes; "-" is standard input. Throws FileError (missing, a folder,
+// unreadable, a pipe without a writer).
 std::string readFile(const std::filesystem::path& path);
 
-// A file that is written piece by piece and stands at `path` only once it is whole: temp file in
-// the same folder, writes, fsync, rename, fsync folder. Until commit() returns, and on any failure,
-// what stood at `path` is untouched; without commit() the temp file is gone. Where `path` is a
-// link, that is the file it leads to; what is no file (a pipe, a device, "-") is written as it
-// comes. All throw FileError, also over a read-only file; whether what is there is of another kind
-// is for the caller to ask (file_kind.h).
+// Writes a file that appears at `path` only when complete: temporary file in the same folder,
+// fsync, rename, fsync of the folder. Without commit(), or on failure, the old file stays untouched
+// and the temporary file is removed. Follows links to their target. Writes directly to pipes,
+// devices and "-". All members throw FileError, also for a read-only file; the caller checks the
+// kind of an existing file (file_kind.h).
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& path);
@@ -29,28 +28,31 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   void append(std::string_view bytes);
-  void commit(); // once
+  // Call once. Returns false if the file is in its place but its folder could not be flushed, so
+  // that a power loss may still undo it; warnOfOutput() then tells the user.
+  bool commit();
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
   void sendToDisk();
 
-  std::string path_, folder_, temporary_; // temporary_ is empty once it has been renamed
+  std::string path_, folder_, temporary_; // temporary_ is empty after the rename
   OutputTarget target_;
-  Unfinished unfinished_;
+  PartialOutput unfinished_;
   Descriptor file_;
-  std::int64_t size_ = 0, sent_ = 0; // bytes; sent_: on their way to the disk
+  std::int64_t size_ = 0, sent_ = 0; // bytes; sent_: passed on for write-back
 };
 
-// The whole of an AtomicFile.
-void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
+// Writes all bytes through an AtomicFile and returns what its commit() does.
+bool writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
+// The same, but throws DiskError where that returns false: for files that others will refer to.
+void writeFileDurably(const std::filesystem::path& path, std::string_view bytes);
 
-// The name of a temporary file of an AtomicFile for `filename`, in whatever process: what
-// a killed one leaves behind.
+// True if `candidate` is the name of a temporary file of an AtomicFile for `filename`, of any
+// process; a killed process leaves such files.
 bool isTemporaryFor(std::string_view filename, std::string_view candidate);
 
-// Folders that are missing on the way to `folder` are made, and are there after a loss of power
-// too. Throws FileError.
+// Creates `folder` and its missing parents, flushed to disk. Throws FileError, as outputTarget().
 void makeFolder(const std::filesystem::path& folder);
 
 } // namespace patina

@@ -34,14 +34,14 @@ bool isNumber(std::string_view cell) {
   return parseNumber(std::string(cell)).has_value();
 }
 
-// A header of names, one with its unit unless numbers follow that are as many.
+// A header of names: one contains a unit, unless a row with as many numbers follows.
 bool isTable(std::string_view text) {
   const std::string_view header = firstLine(text);
   if (header.find(',') == std::string_view::npos || header.find_first_of("{}<>\t") != header.npos)
     return false;
   const std::string_view rest = afterFirstLine(text);
   const std::string_view row = firstLine(rest);
-  const bool whole = rest.find('\n') != std::string_view::npos; // else the head may cut it
+  const bool whole = rest.find('\n') != std::string_view::npos; // the head may cut the row
   if (!whole) return header.find(" [") != std::string_view::npos;
   return std::count(row.begin(), row.end(), ',') == std::count(header.begin(), header.end(), ',') &&
          isNumber(row.substr(0, row.find(',')));
@@ -59,7 +59,7 @@ bool isObj(std::string_view text) {
   return false;
 }
 
-// Lines of eight numbers, after comments; without any the heading that we write.
+// Lines of eight numbers after comments, or the header comment that this program writes.
 bool isPoses(std::string_view text) {
   for (; !text.empty(); text = afterFirstLine(text)) {
     const std::string_view line = firstLine(text);
@@ -90,6 +90,8 @@ FileKind kindOf(std::string_view head, std::uint64_t size) {
   head = head.substr(0, kHead);
   if (isBinaryStl(head, size)) return FileKind::stl;
   if (head.starts_with("\x89PNG"sv)) return FileKind::png;
+  if (head.starts_with("%PDF"sv)) return FileKind::pdf;
+  if (head.starts_with("II*\0"sv) || head.starts_with("MM\0*"sv)) return FileKind::tiff;
   if (head.size() > 2 && head[0] == 'P' && head[1] >= '1' && head[1] <= '6' && head[2] <= ' ')
     return FileKind::pnm;
   if (head.starts_with(".TH ")) return FileKind::roff;
@@ -98,6 +100,7 @@ FileKind kindOf(std::string_view head, std::uint64_t size) {
   if (head.starts_with("ply\n"sv) || head.starts_with("ply\r"sv)) return FileKind::ply;
   if (head.starts_with("solid"sv) && head.find("facet") != head.npos) return FileKind::stl;
   if (head.starts_with("%YAML"sv)) return FileKind::yaml;
+  if (head.find("<svg") != head.npos) return FileKind::svg;
   if (head.find("<VTKFile") != head.npos) {
     if (head.find("\"ImageData\"") != head.npos) return FileKind::image_data;
     if (head.find("\"PolyData\"") != head.npos) return FileKind::poly_data;
@@ -111,11 +114,11 @@ FileKind kindOf(std::string_view head, std::uint64_t size) {
 }
 
 std::string_view nameOf(FileKind kind) {
-  constexpr std::array<std::string_view, 15> names = {
-      "an empty file", "a table",        "a JSON file",           "an OBJ mesh",
-      "a PLY mesh",    "an STL mesh",    "a .vti volume",         "a .vtp surface",
-      "a PNG picture", "an EXR picture", "a YAML file",           "a PNM picture",
-      "poses",         "a manual page",  "a file of another kind"};
+  constexpr std::array<std::string_view, 18> names = {
+      "an empty file", "a table",        "a JSON file",    "an OBJ mesh",
+      "a PLY mesh",    "an STL mesh",    "a .vti volume",  "a .vtp surface",
+      "a PNG picture", "a TIFF picture", "an SVG drawing", "a PDF document", "an EXR picture", "a YAML file",
+      "a PNM picture", "poses",          "a manual page",  "a file of another kind"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -124,7 +127,7 @@ std::optional<FileKind> kindOfName(const std::filesystem::path& path) {
     std::string_view text;
     FileKind kind;
   };
-  constexpr std::array<Ending, 14> endings = {{{".csv", FileKind::table},
+  constexpr std::array<Ending, 18> endings = {{{".csv", FileKind::table},
                                                {".json", FileKind::json},
                                                {".obj", FileKind::obj},
                                                {".ply", FileKind::ply},
@@ -132,6 +135,10 @@ std::optional<FileKind> kindOfName(const std::filesystem::path& path) {
                                                {".vti", FileKind::image_data},
                                                {".vtp", FileKind::poly_data},
                                                {".png", FileKind::png},
+                                               {".tif", FileKind::tiff},
+                                               {".tiff", FileKind::tiff},
+                                               {".svg", FileKind::svg},
+                                               {".pdf", FileKind::pdf},
                                                {".exr", FileKind::exr},
                                                {".yaml", FileKind::yaml},
                                                {".yml", FileKind::yaml},
@@ -148,12 +155,12 @@ std::optional<FileKind> kindOfName(const std::filesystem::path& path) {
 
 namespace {
 
-// What is there, if it is a file with something in it that may be read.
+// Returns the kind of an existing readable file; absent if it is missing or empty.
 std::optional<FileKind> kindOfFile(const std::string& name) {
   struct stat info {};
   if (::stat(name.c_str(), &info) != 0 || !S_ISREG(info.st_mode) || info.st_size == 0) return {};
   const Descriptor file(openRetrying(name.c_str(), O_RDONLY));
-  if (file.get() < 0 && errno == EACCES) return {}; // one that only may be written
+  if (file.get() < 0 && errno == EACCES) return {}; // write-only file
   if (file.get() < 0) throw DiskError(name, "cannot be opened: " + reason(errno));
   std::array<char, kHead> buffer{};
   const std::size_t got = readSome(file.get(), name, buffer.data(), buffer.size());
@@ -171,9 +178,9 @@ void requireSameKind(const std::filesystem::path& path, FileKind kind) {
                         (kind == FileKind::other ? "another" : std::string(nameOf(kind))) +
                         "; remove it or choose another name");
   if (nameless) return;
-  if (const std::optional<FileKind> told = kindOfName(path); told && *told != kind)
+  if (const std::optional<FileKind> expected = kindOfName(path); expected && *expected != kind)
     throw FileError(name, 0,
-                    "is the name of " + std::string(nameOf(*told)) + ", but " +
+                    "is the name of " + std::string(nameOf(*expected)) + ", but " +
                         std::string(nameOf(kind)) + " is to be written");
 }
 

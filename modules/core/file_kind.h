@@ -1,4 +1,4 @@
-// What a file is by its content, so that a table does not take the place of a mesh.
+// Detects a file's kind by its content, so that a table never overwrites a mesh.
 #pragma once
 
 #include <cstdint>
@@ -18,25 +18,27 @@ enum class FileKind : std::uint8_t {
   image_data, // .vti
   poly_data,  // .vtp
   png,
+  tiff,
+  svg,
+  pdf,
   exr,
   yaml,
-  pnm,   // .pgm, a recording's frames
-  poses, // .tum: eight numbers a line
+  pnm,   // .pgm, frames of a recording
+  poses, // .tum: eight numbers per line
   roff,  // a manual page
   other
 };
 
-// `head` is the file's beginning, 1 kB or the whole of it; `size` its bytes.
+// `head`: first 1 kB of the file, or all of it; `size`: bytes of the file.
 FileKind kindOf(std::string_view head, std::uint64_t size);
-// "a JSON object", "a PLY mesh".
+// Returns "a JSON file", "a PLY mesh".
 std::string_view nameOf(FileKind kind);
 
-// What a file's ending says of it, in either case; nothing of an ending that is not ours.
+// Kind by file name extension, in either case; absent for an unknown extension.
 std::optional<FileKind> kindOfName(const std::filesystem::path& path);
 
-// FileError if `kind` may not be written to `path`: a file of another kind is there, or the name
-// ends as that of another kind does. Nothing there, nothing in it, or the same kind is no error;
-// `other` is the same as no other.
+// Throws FileError if a file of another kind exists at `path`, or if the extension belongs to
+// another kind. An absent or empty file passes; `other` never equals an existing kind.
 void requireSameKind(const std::filesystem::path& path, FileKind kind);
 
 } // namespace patina

@@ -1,5 +1,6 @@
 #include "core/json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,7 +11,7 @@
 namespace patina {
 namespace {
 
-// Deeper text is hostile or broken; the recursive destructor of a value must not meet it.
+// Limits the recursion of a value's destructor; deeper text is hostile or broken.
 constexpr std::size_t kMaxDepth = 200;
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
 
@@ -47,7 +48,7 @@ struct JsonSeam {
 namespace {
 
 void writeString(const std::string& text, std::string& out) {
-  // The library's own escaping; broken UTF-8 (a file name may hold it) is replaced, not thrown on.
+  // Uses the library's escaping; invalid UTF-8, as in file names, is replaced and does not throw.
   out += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -57,7 +58,7 @@ void newLine(int indent, int level, std::string& out) {
   out.append(static_cast<std::size_t>(indent) * static_cast<std::size_t>(level), ' ');
 }
 
-// Builds our values directly, so that a hostile file never exists as the library's tree too.
+// Builds Json values directly, so that a hostile file never exists as the library's tree too.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
   Builder(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -71,7 +72,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return add(Json(static_cast<std::int64_t>(value)));
   }
   bool number_float(number_float_t, const string_t& digits) override {
-    // The library's own conversion follows the locale.
+    // The library's conversion depends on the locale.
     const std::optional<double> value = parseNumber(digits);
     return add(Json(value.value_or(std::numeric_limits<double>::quiet_NaN())));
   }
@@ -113,7 +114,20 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     objects_.emplace_back();
     return true;
   }
+  // Readers would disagree about which of two equal keys counts.
+  void requireEachKeyOnce(const Json::Object& members) const {
+    std::vector<std::string_view> keys;
+    keys.reserve(members.size());
+    for (const auto& [key, value] : members) keys.push_back(key);
+    std::sort(keys.begin(), keys.end());
+    const auto twice = std::adjacent_find(keys.begin(), keys.end());
+    if (twice != keys.end())
+      throw FileError(name_, 0,
+                      "the key '" + printable(std::string(*twice)) +
+                          "' stands twice in one object; remove one of the two");
+  }
   bool close() {
+    if (stack_.back().isObject()) requireEachKeyOnce(objects_.back());
     Json value =
         stack_.back().isObject() ? Json(std::move(objects_.back())) : std::move(stack_.back());
     stack_.pop_back();
@@ -125,7 +139,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   std::string_view text_;
   const std::string& name_;
   std::vector<Json> stack_;
-  // Members are collected here and not through set(), which looks for the key each time.
+  // Collected here because set() would search for the key each time.
   std::vector<Json::Object> objects_;
   std::vector<std::string> keys_;
 };
@@ -139,7 +153,7 @@ void JsonSeam::write(const Json& json, int indent, int level, std::string& out) 
     out += json.asBool() ? "true" : "false";
   } else if (const double* number = std::get_if<double>(&json.value_)) {
     std::string digits = std::isfinite(*number) ? formatNumber(*number) : "null";
-    // "-0" would come back as an integer and lose its sign.
+    // "-0" would be read back as an integer and lose its sign.
     if (std::isfinite(*number) && digits.find_first_of(".e") == std::string::npos) digits += ".0";
     out += digits;
   } else if (json.isNumber()) {
@@ -149,7 +163,7 @@ void JsonSeam::write(const Json& json, int indent, int level, std::string& out) 
   } else if (json.isArray()) {
     out += '[';
     bool first = true;
-    // Numbers stay on one line: a 4x4 matrix reads as four rows.
+    // Arrays of numbers stay on one line, so that a 4x4 matrix is written as four rows.
     bool flat = true;
     for (const Json& item : json.asArray()) flat = flat && !item.isArray() && !item.isObject();
     for (const Json& item : json.asArray()) {

@@ -1,4 +1,4 @@
-// The JSON seam: a plain value type. Only json.cpp knows the parsing library.
+// JSON as a plain value type. Only json.cpp includes the parsing library.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ class Json {
   bool isArray() const { return std::holds_alternative<Array>(value_); }
   bool isObject() const { return std::holds_alternative<Object>(value_); }
 
-  // Each throws patina::Error naming the expected and found kind.
+  // All throw patina::Error with the expected and the found kind.
   bool asBool() const;
   double asNumber() const;
   std::int64_t asInteger() const;
@@ -46,15 +46,14 @@ class Json {
   const Array& asArray() const;
   const Object& asObject() const;
 
-  // Object access. find: nullptr if absent. at: throws Error naming the key. set: appends or
-  // replaces.
+  // find() returns nullptr without the key, at() throws Error with it, set() appends or replaces.
   const Json* find(std::string_view key) const;
   const Json& at(std::string_view key) const;
   Json& set(std::string_view key, Json value);
   // Array access.
   void push(Json value);
 
-  // indent < 0: one line. Doubles are written so that they read back bit for bit.
+  // Writes one line if indent < 0. Doubles read back bit for bit.
   std::string dump(int indent = 2) const;
 
  private:
@@ -62,8 +61,8 @@ class Json {
   friend struct JsonSeam;
 };
 
-// Throws FileError(name, line, cause); name is what the message calls the text (a path). Depth and
-// size are bounded: hostile text gives an error, never a crash.
+// Parses bounded depth and size, so that hostile text gives an error and never a crash. Throws
+// FileError(name, line, cause), with the text's path as `name`.
 Json parseJson(std::string_view text, const std::string& name);
 
 } // namespace patina

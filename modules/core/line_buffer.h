@@ -1,4 +1,4 @@
-// Lines of text that arrives in pieces.
+// Splits text that arrives in pieces into lines.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace patina {
 
-// Lines end with LF, CR LF or CR, as the first line of the text does.
+// The first line end decides whether lines end with LF, CR LF or CR.
 class LineBuffer {
  public:
   // Appends the bytes that `read(char*, capacity)` returns and returns their number.
@@ -24,13 +24,13 @@ class LineBuffer {
                bytes.size());
   }
 
-  // Returns false if no whole line is left; `is_last` says that the rest is one. The line is valid
-  // until the next append.
+  // Returns false if no complete line is left; `is_last` accepts the remaining text as a line. The
+  // line is valid until the next append.
   bool next(std::string_view& line, bool is_last = false) {
     std::size_t end = bytes_.find(terminator_ ? terminator_ : '\n', searched_ + used_);
     if (!terminator_) {
       const std::size_t cr = bytes_.find('\r', used_);
-      // Only the byte after a CR tells whether it ends the line alone.
+      // The byte after a CR decides whether the CR alone ends the line.
       if (cr < end && cr + 1 == bytes_.size() && !is_last) return false;
       const bool alone = cr < end && cr + 1 < bytes_.size() && bytes_[cr + 1] != '\n';
       if (alone || (cr != std::string::npos && end == std::string::npos)) end = cr;
@@ -47,11 +47,11 @@ class LineBuffer {
     return true;
   }
 
-  std::size_t rest() const { return bytes_.size() - used_; } // bytes that no line has taken
+  std::size_t rest() const { return bytes_.size() - used_; } // bytes not returned as lines yet
 
  private:
   std::string bytes_;
-  std::size_t used_ = 0, searched_ = 0; // bytes after used_ that hold no terminator
+  std::size_t used_ = 0, searched_ = 0; // searched_: bytes after used_ without a terminator
   char terminator_ = 0;                 // 0 until the first line has ended
 };
 

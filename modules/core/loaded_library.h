@@ -1,5 +1,4 @@
-// Libraries of our own that are loaded when they are first asked for: linked, what they stand on
-// would cost every start its time.
+// Own libraries that are loaded on first use, because linking them would slow down every start.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +7,10 @@
 
 namespace patina {
 
-// Where they lie: beside the running program, and where libraries are installed.
+// Folders that are searched: the program's own and the installed libraries' folder.
 std::vector<std::filesystem::path> libraryFolders();
 
-// The address of `symbol` in the library `file`, which is looked for there. nullptr if there is
-// none, and `cause` says why.
+// Address of `symbol` in the library `file` in these folders; nullptr and `cause` on failure.
 void* loadedSymbol(const std::string& file, const char* symbol, std::string& cause);
 
 } // namespace patina

@@ -22,7 +22,7 @@ std::string processorName() {
       const std::size_t end = text.find('\n', at);
       if (begin < end && end != std::string::npos) return text.substr(begin + 2, end - begin - 2);
     }
-  } catch (const Error&) { // not every system tells; a table without the name is still a table
+  } catch (const Error&) { // the table stays useful without the name
   }
   return "unknown";
 }

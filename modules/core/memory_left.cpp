@@ -51,7 +51,7 @@ void requireMemory(double bytes, const std::string& what, const std::string& adv
 }
 
 void requireRoomToLoad(const std::string& what) {
-  constexpr double kTaken = 450e6; // [bytes] of addresses, of the largest, as measured
+  constexpr double kTaken = 450e6; // address space of the largest library, measured [bytes]
   if (memoryIsLimited()) requireMemory(kTaken, what);
 }
 

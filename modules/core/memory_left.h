@@ -1,4 +1,4 @@
-// How much memory there is still to take.
+// Memory that is still available.
 #pragma once
 
 #include <cstddef>
@@ -6,16 +6,15 @@
 
 namespace patina {
 
-// [bytes] that this process may still take: of the machine, and of its own limit (ulimit -v). An
-// estimate; the largest size_t where the system does not say.
+// Estimated memory that this process may still allocate [bytes], limited by the machine and by its
+// own limit (ulimit -v); the largest size_t if unknown.
 std::size_t memoryLeft();
-// Whether its own limit is set.
+// True if the process has a memory limit of its own.
 bool memoryIsLimited();
-// Error "WHAT needs about 2.1 GB of memory, and 300 MB are left" if that is so; `advice` follows
-// it.
+// Throws Error "WHAT needs about 2.1 GB of memory, and 300 MB are left" plus `advice`, if so.
 void requireMemory(double bytes, const std::string& what, const std::string& advice = "");
-// The same, where a limit is set, before a library of many is loaded: with less, constructors of
-// what it stands on end the program.
+// Same check before a library with many dependencies is loaded under a memory limit: their
+// constructors would otherwise end the program.
 void requireRoomToLoad(const std::string& what);
 
 } // namespace patina

@@ -1,4 +1,4 @@
-// Values and their words, as files, commands and messages have them: a table {value, text}.
+// Tables {value, text} of the words that files, commands and messages use for values.
 #pragma once
 
 #include <iterator>
@@ -13,23 +13,23 @@ template <typename T> struct Named {
   std::string_view text;
 };
 
-// Empty where the table lacks it.
+// Returns an empty text if the table lacks the value.
 template <typename Table, typename T>
-constexpr std::string_view textIn(const Table& table, const T& value) {
+constexpr std::string_view nameIn(const Table& table, const T& value) {
   for (const auto& row : table)
     if (row.value == value) return row.text;
   return {};
 }
 
-template <typename Table> auto valueIn(const Table& table, std::string_view text) {
+template <typename Table> auto parseIn(const Table& table, std::string_view text) {
   std::optional<decltype(table[0].value)> found;
   for (const auto& row : table)
     if (row.text == text) found = row.value;
   return found;
 }
 
-// "a, b or c": all its words, `last` before the last.
-template <typename Table> std::string textsOf(const Table& table, std::string_view last = ", ") {
+// Returns all words as "a, b or c"; `last` separates the last one.
+template <typename Table> std::string allNames(const Table& table, std::string_view last = ", ") {
   std::string all;
   for (std::size_t i = 0, n = std::size(table); i < n; ++i)
     all.append(i == 0 ? "" : i + 1 == n ? last : ", ").append(table[i].text);

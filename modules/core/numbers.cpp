@@ -10,13 +10,13 @@
 namespace patina {
 namespace {
 
-// Three significant digits for people, without a locale: 12.3, 0.75, 980.
+// Rounds to three significant digits without a locale: 12.3, 0.75, 980.
 std::string shortNumber(double value) {
   std::array<char, 64> buffer{};
   const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                     std::chars_format::general, 3);
   std::string text(buffer.data(), result.ptr);
-  // 3 digits would turn 1023 into 1.02e+03.
+  // The general format would write 1023 as 1.02e+03.
   if (text.find('e') != std::string::npos && std::abs(value) >= 1 && std::abs(value) < 1e6) {
     const auto whole = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                      std::chars_format::fixed, 0);
@@ -36,7 +36,7 @@ constexpr std::array<LengthSuffix, 5> kUnits{
 } // namespace
 
 std::optional<double> parseNumber(std::string_view text) {
-  // from_chars refuses a leading plus, which other programs write.
+  // from_chars rejects a leading plus, which other programs write.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -64,7 +64,7 @@ double parseLength(std::string_view text) {
 }
 
 std::string formatNumber(double value) {
-  if (std::isnan(value)) return "nan"; // its sign bit means nothing
+  if (std::isnan(value)) return "nan"; // the sign of NaN has no meaning
   std::array<char, 64> buffer{};
   const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
   return {buffer.data(), result.ptr};

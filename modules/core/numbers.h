@@ -1,4 +1,4 @@
-// Locale-independent numbers and lengths.
+// Numbers and lengths as text, independent of the locale.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,15 @@
 
 namespace patina {
 
-// The whole of text as a number ("1e-3"); nullopt if any of it is not part of one. "nan" and "inf"
-// parse.
+// Parses all of `text` as a number ("1e-3", "nan", "inf"); nullopt if any part is left over.
 std::optional<double> parseNumber(std::string_view text);
 
-// "1.5mm" -> 0.0015; units um mm cm m in; without one, metres. Throws Error naming the text.
+// Parses a length in um, mm, cm, m (default) or in: "1.5mm" -> 0.0015. Throws Error.
 double parseLength(std::string_view text);
 
-// Shortest text that reads back bit for bit.
+// Returns the shortest text that reads back bit for bit.
 std::string formatNumber(double value);
-// For people: "12.3 MB", "0.75 mm", "1,003,520".
+// Rounded texts for the user: "12.3 MB", "0.75 mm", "1,003,520".
 std::string formatBytes(double bytes);
 std::string formatLength(double metres);
 std::string formatArea(double square_metres); // "3600 mm²"

@@ -8,19 +8,20 @@
 #include "core/descriptor.h"
 #include "core/error.h"
 #include "core/numbers.h"
+#include "core/ownership.h"
 
 namespace patina {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostLinks = 40; // as the system's own
+constexpr int kMaxLinks = 40; // limit of the kernel
 
 [[noreturn]] void refuse(const std::string& name, const std::string& cause) {
   throw FileError(name, 0, "cannot be written: " + cause);
 }
 
-// /dev/stdout leads to /proc/self/fd/1: opened anew, a file there would be written from its start.
+// Opening /dev/stdout, a link to /proc/self/fd/1, would write a file from its start.
 int openDescriptor(const fs::path& path) {
   const std::string parent = path.parent_path();
   const std::string self = "/proc/" + std::to_string(::getpid());
@@ -54,7 +55,8 @@ OutputTarget outputTarget(const fs::path& path) {
     std::error_code none;
     const fs::path next = fs::read_symlink(end, none);
     if (none) break;
-    if (links == kMostLinks) refuse(name, reason(ELOOP));
+    if (links == kMaxLinks) refuse(name, reason(ELOOP));
+    refuseForeignLink(end, path);
     end = next.is_absolute() ? next : end.parent_path() / next;
   }
   target.path = end.string();

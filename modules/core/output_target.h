@@ -1,4 +1,4 @@
-// Where the bytes of an output go: through links, pipes and devices, never in their place.
+// Resolves an output path; links, pipes and devices are written through and never replaced.
 #pragma once
 
 #include <filesystem>
@@ -6,22 +6,22 @@
 
 namespace patina {
 
-// "-": standard output, or as an input standard input. A file of that name is "./-".
+// True for "-": standard output or, for an input, standard input. A file of that name is "./-".
 bool isStandardStream(const std::filesystem::path& path);
 
 struct OutputTarget {
-  std::string path;       // a link's end; of a stream its own name
-  int descriptor = -1;    // of a stream that the program was started with (/dev/stdout, /dev/fd/3)
-  bool is_stream = false; // a descriptor, pipe or device: written as it comes, never replaced
+  std::string path;       // target of a link; a stream's own name
+  int descriptor = -1;    // descriptor inherited at the start (/dev/stdout, /dev/fd/3)
+  bool is_stream = false; // a descriptor, pipe or device: written directly, never replaced
   bool exists = false;
-  unsigned permissions = 0666; // of what exists
+  unsigned permissions = 0666; // permissions of an existing file
 };
 
-// FileError if nothing can be written there: a folder, a ring of links, a read-only file (also for
-// who may write it in spite of that), a socket. Nothing is opened.
+// Throws FileError for a folder, a cycle of links, a link that isForeignLink() names, a socket or a
+// read-only file, even if the user's privileges would allow writing it. Opens nothing.
 OutputTarget outputTarget(const std::filesystem::path& path);
 
-// Whether something is at `path`; FileError with its cause where that cannot be known.
+// True if something exists at `path`. Throws FileError if that cannot be determined.
 bool pathExists(const std::filesystem::path& path);
 
 } // namespace patina

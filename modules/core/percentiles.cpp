@@ -7,7 +7,7 @@ namespace patina {
 
 namespace {
 
-// at(rank), from 1, is the value of that rank.
+// at(rank) returns the value of that rank, from 1.
 template <class At> Percentiles ranked(std::size_t count, const At& at) {
   const auto nearest = [&](double fraction) {
     return at(

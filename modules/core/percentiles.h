@@ -1,4 +1,4 @@
-// How a list of measured values spreads.
+// Percentiles of measured values.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,9 @@ namespace patina {
 struct Percentiles {
   double p50 = 0, p99 = 0, p999 = 0, max = 0;
 };
-// Nearest rank: the smallest value that at least the fraction of all does not exceed. Zeros for an
-// empty list.
+// Nearest rank: smallest value that at least the fraction does not exceed; zeros without values.
 Percentiles percentiles(std::vector<double> values);
-// The same of whole numbers that are counted, which takes room for each different one only.
+// Same for a histogram of whole numbers, with one entry per distinct value.
 Percentiles percentilesOfCounts(const std::map<std::uint32_t, std::size_t>& counts);
 
 } // namespace patina

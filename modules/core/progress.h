@@ -1,5 +1,4 @@
-// Progress and cancel of a long operation. Thread-safe: workers report and poll, any thread
-// cancels.
+// Progress and cancellation of a long operation. Workers report and poll, any thread cancels.
 #pragma once
 
 #include <atomic>
@@ -13,14 +12,14 @@ namespace patina {
 
 class Progress {
  public:
-  // Called with a fraction in [0, 1] and a phrase ("distances"); never from two threads at once.
+  // Called with a fraction in [0, 1] and a phrase ("distances"), by one thread at a time.
   using Listener = std::function<void(double fraction, std::string_view what)>;
 
   Progress() = default;
   explicit Progress(Listener listener) : listener_(std::move(listener)) {}
-  // One step of a longer operation: cancelled when that is.
-  Progress(const Progress& whole, Listener listener)
-      : listener_(std::move(listener)), whole_(&whole) {}
+  // Step of a longer operation; cancelling the parent cancels the step.
+  Progress(const Progress& parent, Listener listener)
+      : listener_(std::move(listener)), parent_(&parent) {}
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
@@ -31,7 +30,7 @@ class Progress {
   }
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
   bool cancelled() const noexcept {
-    return cancelled_.load(std::memory_order_relaxed) || (whole_ && whole_->cancelled());
+    return cancelled_.load(std::memory_order_relaxed) || (parent_ && parent_->cancelled());
   }
   void throwIfCancelled() const {
     if (cancelled()) throw Cancelled();
@@ -39,7 +38,7 @@ class Progress {
 
  private:
   Listener listener_;
-  const Progress* whole_ = nullptr;
+  const Progress* parent_ = nullptr;
   std::mutex mutex_;
   std::atomic<bool> cancelled_{false};
 };

@@ -9,11 +9,11 @@
 namespace patina {
 
 template <typename T> class Ring {
-  // Eigen's fixed vectors are plain but not "trivially copyable"; what matters is that nothing is owned.
+  // Eigen's fixed vectors are not "trivially copyable"; it suffices that items own nothing.
   static_assert(std::is_trivially_destructible_v<T>);
 
  public:
-  // capacity is rounded up to a power of two; all memory is touched here, none later.
+  // Rounds the capacity up to a power of two and allocates and touches all memory at once.
   explicit Ring(std::size_t capacity) {
     std::size_t size = 1;
     while (size < capacity) size *= 2;
@@ -21,7 +21,7 @@ template <typename T> class Ring {
     items_ = std::make_unique<T[]>(size);
   }
 
-  // Producer. False (and one more in dropped()) if full: the newest is dropped, never waited for.
+  // Producer. Returns false and counts the item in dropped() if the queue is full; never waits.
   bool push(const T& item) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) > mask_) {
@@ -33,7 +33,7 @@ template <typename T> class Ring {
     return true;
   }
 
-  // Consumer. False if empty.
+  // Consumer. Returns false if the queue is empty.
   bool pop(T& item) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_.load(std::memory_order_acquire)) return false;

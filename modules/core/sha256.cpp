@@ -14,8 +14,8 @@ namespace {
 
 using Digest = std::array<unsigned char, EVP_MAX_MD_SIZE>;
 
-void require(int success) {
-  if (success != 1) throw Error("SHA-256 is not available in this system's OpenSSL");
+void require(int success, const std::string& hash = "SHA-256") {
+  if (success != 1) throw Error(hash + " is not available in this system's OpenSSL");
 }
 
 std::string hexadecimal(const Digest& digest, unsigned int length) {
@@ -34,6 +34,14 @@ std::string sha256(std::string_view bytes) {
   Digest digest{};
   unsigned int length = 0;
   require(EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr));
+  return hexadecimal(digest, length);
+}
+
+std::string md5(std::string_view bytes) {
+  Digest digest{};
+  unsigned int length = 0;
+  require(EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_md5(), nullptr),
+          "MD5");
   return hexadecimal(digest, length);
 }
 

@@ -8,7 +8,11 @@
 namespace patina {
 
 std::string sha256(std::string_view bytes);
-// The same of a file's bytes, of which few are in memory at a time. Throws FileError.
+// Hashes a file piece by piece. Throws FileError.
 std::string sha256OfFile(const std::filesystem::path& path);
+
+// MD5 (RFC 1321) as 32 such digits, for formats that check a copy by it; it is no protection
+// against a forger.
+std::string md5(std::string_view bytes);
 
 } // namespace patina

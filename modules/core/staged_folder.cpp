@@ -42,9 +42,9 @@ void flush(const fs::path& folder) {
     throw DiskError(folder.string(), "cannot be flushed to disk: " + reason(errno));
 }
 
-constexpr std::string_view kStaging = ".writing-"; // and the process's number, and one more
+constexpr std::string_view kStaging = ".writing-"; // followed by the process id and a counter
 
-// What runs that were killed have left.
+// Returns staging folders of processes that were killed.
 std::vector<fs::path> abandonedIn(const fs::path& folder) {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -61,14 +61,14 @@ std::vector<fs::path> abandonedIn(const fs::path& folder) {
 
 } // namespace
 
-bool wasAbandoned(const fs::path& folder) {
+bool isInterruptedWrite(const fs::path& folder) {
   return fs::is_directory(folder) && !abandonedIn(folder).empty();
 }
 
-StagedFolder::StagedFolder(const fs::path& folder, const std::string& last)
-    : folder_(folder), last_(last), fresh_(folder, last) {
+StagedFolder::StagedFolder(const fs::path& folder, const std::string& index_file)
+    : folder_(folder), index_file_(index_file), fresh_(folder, index_file) {
   makeFolder(folder_);
-  // Never one that is there: a run that was killed may have left files in it.
+  // Always uses a new name: a killed process may have left files in an existing folder.
   for (int i = 0;; ++i) {
     staging_ =
         folder_ / (std::string(kStaging) + std::to_string(::getpid()) + "-" + std::to_string(i));
@@ -76,7 +76,7 @@ StagedFolder::StagedFolder(const fs::path& folder, const std::string& last)
     if (errno != EEXIST)
       throw DiskError(staging_.string(), "cannot be made a folder: " + reason(errno));
   }
-  unfinished_ = Unfinished(staging_);
+  unfinished_ = PartialOutput(staging_);
 }
 
 StagedFolder::~StagedFolder() {
@@ -86,8 +86,8 @@ StagedFolder::~StagedFolder() {
 
 void StagedFolder::commit() {
   const std::vector<fs::path> abandoned = abandonedIn(folder_);
-  // What an earlier run has made, or had begun to put in place when it was killed.
-  const bool ours = pathExists(folder_ / last_) || !abandoned.empty();
+  // True if an earlier run wrote the folder, completely or not.
+  const bool ours = pathExists(folder_ / index_file_) || !abandoned.empty();
   std::vector<Move> moves;
   std::vector<fs::path> folders = {folder_};
   for (const fs::directory_entry& file : fs::recursive_directory_iterator(staging_)) {
@@ -106,19 +106,27 @@ void StagedFolder::commit() {
     moves.push_back({file.path(), target.path});
   }
   for (const fs::path& folder : folders) makeFolder(folder);
-  const fs::path index = staging_ / last_;
+  const fs::path index = staging_ / index_file_;
   std::partition(moves.begin(), moves.end(), [&](const Move& one) { return one.from != index; });
-  const fs::path old = outputTarget(folder_ / last_).path; // where the new one comes, too
+  const fs::path old =
+      outputTarget(folder_ / index_file_).path; // link target that receives the new file
+  std::string unflushed;
   unfinished_.finish([&] {
     if (::unlink(old.c_str()) == 0)
       flush(old.parent_path());
     else if (errno != ENOENT)
       throw DiskError(old.string(), "cannot be replaced: " + reason(errno));
     for (const Move& one : moves) move(one);
-    for (const fs::path& folder : folders) flush(folder);
-    if (old.parent_path() != folder_) flush(old.parent_path());
+    // All files are in their places: nobody could take that back.
+    if (old.parent_path() != folder_) folders.push_back(old.parent_path());
+    try {
+      for (const fs::path& folder : folders) flush(folder);
+    } catch (const DiskError& error) {
+      unflushed = std::string(error.what()) + ": a power loss soon may undo what was written";
+    }
     return 0;
   });
+  if (!unflushed.empty()) warnOfOutput(unflushed);
   fresh_.keep();
   std::error_code ignored;
   for (const fs::path& left : abandoned) fs::remove_all(left, ignored);

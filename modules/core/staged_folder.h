@@ -1,38 +1,38 @@
-// Several files that belong together and come into a folder together.
+// Writes several files that become visible in a folder together.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
-#include "core/unfinished.h"
+#include "core/partial_output.h"
 
 namespace patina {
 
-// They are written into a hidden folder within `folder`, which is made if it is missing, and into
-// folders in that; commit() moves them to where they belong. Without it nothing of them is left,
-// and files that were there before are as they were. All throw FileError.
+// The files are written into a hidden folder within `folder`, which is created if missing;
+// subfolders are allowed. commit() moves them into place. Without it they are removed, and earlier
+// files stay unchanged. All members throw FileError.
 class StagedFolder {
  public:
-  // `last` is the file that says that the others are whole.
-  StagedFolder(const std::filesystem::path& folder, const std::string& last);
+  // `index_file` is the file whose presence marks the output as complete.
+  StagedFolder(const std::filesystem::path& folder, const std::string& index_file);
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
-  const std::filesystem::path& path() const { return staging_; } // where to write
-  // An old `last` goes first, the new one comes last. Refuses before it moves any: files of another
-  // kind, read-only ones. Once.
+  const std::filesystem::path& path() const { return staging_; } // folder to write to
+  // Removes an old index file first and moves the new one last. Checks for read-only files and
+  // files of another kind before it moves any. Call once.
   void commit();
 
  private:
   std::filesystem::path folder_, staging_;
-  std::string last_;
+  std::string index_file_;
   NewFolder fresh_;
-  Unfinished unfinished_;
+  PartialOutput unfinished_;
 };
 
-// Whether a run was killed while it wrote into the folder. What it has put in place is no scene,
-// scan or study yet; the next commit() takes its place and removes the rest.
-bool wasAbandoned(const std::filesystem::path& folder);
+// True if a process was killed while it wrote into the folder. Its files are not a complete output;
+// the next commit() replaces them and removes the rest.
+bool isInterruptedWrite(const std::filesystem::path& folder);
 
 } // namespace patina

@@ -1,4 +1,4 @@
-// How late the last N ticks were, written by the servo thread and read by any other without a lock.
+// Wake-up latency of the last N ticks: the servo thread writes, any thread reads without a lock.
 #pragma once
 
 #include <atomic>

@@ -10,14 +10,13 @@ namespace {
 struct Symbol {
   std::string_view name;
   Unit unit;
-  bool listed = true; // in messages; a second spelling is not
+  bool listed = true; // shown in messages; false for a second spelling
 };
 
 constexpr std::array<int, 4> kLength{1, 0, 0, 0}, kTime{0, 1, 0, 0}, kForce{0, 0, 1, 0},
     kAngle{0, 0, 0, 1}, kAcceleration{1, -2, 0, 0};
 
-// The micro sign is U+00B5, the Greek letter U+03BC, or one byte in Latin-1; the degree sign is
-// U+00B0 or one byte.
+// Micro sign U+00B5, Greek letter U+03BC or one Latin-1 byte; degree sign U+00B0 or one byte.
 constexpr Symbol kSymbols[] = {
     {"m", {1, 1, kLength}},
     {"km", {1e3, 1, kLength}},
@@ -58,7 +57,7 @@ constexpr Symbol kSymbols[] = {
     {"mg", {980665, 1e8, kAcceleration}},
 };
 
-// "2", "^2", "**2", "-1", and a raised 2 in UTF-8 or Latin-1. Nothing is 1.
+// Accepts "2", "^2", "**2", "-1", and a raised 2 in UTF-8 or Latin-1. An empty text is 1.
 std::optional<int> exponentIn(std::string_view text) {
   if (text.empty()) return 1;
   if (text == "\xC2\xB2" || text == "\xB2") return 2;
@@ -72,7 +71,8 @@ std::optional<int> exponentIn(std::string_view text) {
   return exponent >= -3 && exponent <= 3 && exponent != 0 ? std::optional(exponent) : std::nullopt;
 }
 
-// The symbol with the longest name that the factor begins with and whose rest is an exponent.
+// Multiplies the unit by the longest symbol at the factor's start that only an exponent, or
+// nothing, follows. Returns false if there is none.
 bool multiply(Unit& unit, std::string_view factor, int sign) {
   const Symbol* best = nullptr;
   int exponent = 0;
@@ -103,7 +103,7 @@ std::optional<Unit> parseUnit(std::string_view text) {
   Unit unit;
   int sign = 1;
   while (true) {
-    // A star between factors is a product, two stars are a power.
+    // One star between factors is a product, two stars are a power.
     std::size_t end = 0;
     while (end < text.size() && text[end] != '/' && text[end] != ' ' &&
            !(text[end] == '*' && end > 0 && end + 1 < text.size() && text[end + 1] != '*' &&

@@ -1,4 +1,4 @@
-// Units of measurement as the headers of tables name them.
+// Units of measurement in the headers of tables. parseLength() of numbers.h reads a typed length.
 #pragma once
 
 #include <array>
@@ -10,11 +10,10 @@ namespace patina {
 
 struct Unit {
   double multiplier = 1, divisor = 1; // value in SI = value * multiplier / divisor
-  std::array<int, 4> exponents{};     // of m, s, N and rad
+  std::array<int, 4> exponents{};     // powers of m, s, N and rad
 };
 
-// Parses "mm", "m/s^2", "N s/m", "µm"; an empty text, "1" and "-" have no dimension. Returns
-// nullopt for an unknown symbol.
+// Parses "mm", "m/s^2", "N s/m", "µm"; "", "1" and "-" have no dimension. nullopt if unknown.
 std::optional<Unit> parseUnit(std::string_view text);
 
 // Lists the known symbols of the same dimension: "m, km, dm, cm".

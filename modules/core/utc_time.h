@@ -1,4 +1,4 @@
-// When something was done, for records that outlive the program.
+// Time stamps for files.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,7 @@
 
 namespace patina {
 
-// Seconds since 1970, UTC. SOURCE_DATE_EPOCH in the environment takes the clock's place, so that
-// the same work gives the same files. Any thread.
+// Seconds since 1970, UTC, or SOURCE_DATE_EPOCH for reproducible files. Any thread.
 std::int64_t utcSeconds();
 std::string formatUtc(std::int64_t seconds); // "2026-11-25T09:06:47Z"
 

@@ -12,13 +12,16 @@ bool isUtf8(std::string_view text) {
       continue;
     }
     const int more = first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : 1;
-    if (first < 0xc2 || first > 0xf4) return false; // a tail, overlong, or beyond Unicode
+    if (first < 0xc2 || first > 0xf4)
+      return false; // continuation byte, overlong, or beyond Unicode
     std::uint32_t point = first & (0x3fU >> more);
     for (int k = 0; k < more; ++k, ++i) {
       if (i == text.size() || (text[i] & 0xc0) != 0x80) return false;
       point = point << 6 | (static_cast<unsigned char>(text[i]) & 0x3fU);
     }
-    const std::uint32_t least = more == 3 ? 0x10000 : more == 2 ? 0x800 : 0xa0; // C1 are controls
+    const std::uint32_t least = more == 3   ? 0x10000
+                                : more == 2 ? 0x800
+                                            : 0xa0; // excludes the C1 control characters
     if (point < least || point > 0x10ffff || (point >= 0xd800 && point < 0xe000)) return false;
   }
   return true;

@@ -1,4 +1,4 @@
-// Text as people of any language write it.
+// Checks and conversions of UTF-8 text.
 #pragma once
 
 #include <cstddef>
@@ -6,16 +6,15 @@
 
 namespace patina {
 
-// Whether the bytes are well-formed UTF-8 without control characters.
+// True if the bytes are well-formed UTF-8 without control characters.
 bool isUtf8(std::string_view text);
 
-// Without the three bytes that some editors and spreadsheets begin a file with.
+// Removes the three-byte mark that some editors and spreadsheets write first.
 inline std::string_view withoutByteOrderMark(std::string_view bytes) {
   return bytes.substr(0, 3) == "\xEF\xBB\xBF" ? bytes.substr(3) : bytes;
 }
 
-// Writes the one to three bytes of a code point of the first plane and returns their number; '?' for
-// half of a pair.
+// Writes the UTF-8 bytes of a UTF-16 code unit, '?' for a surrogate; returns their number.
 std::size_t putUtf8(char16_t unit, char* to);
 
 } // namespace patina

@@ -16,7 +16,7 @@ std::string plain(const Json& value) {
   return value.dump(-1);
 }
 
-// Names in order of first appearance, as rows of one study may differ in their extra columns.
+// Names in order of first appearance; rows of one study may have different extra columns.
 template <typename Select>
 std::vector<std::string> namesOf(const WorkPrecisionTable& table, Select select) {
   std::vector<std::string> names;
@@ -29,9 +29,9 @@ std::vector<std::string> namesOf(const WorkPrecisionTable& table, Select select)
   return names;
 }
 
-std::vector<std::string> knobNames(const WorkPrecisionTable& table) {
+std::vector<std::string> settingNames(const WorkPrecisionTable& table) {
   return namesOf(
-      table, [](const WorkPrecisionRow& row) -> const auto& { return row.knobs; });
+      table, [](const WorkPrecisionRow& row) -> const auto& { return row.settings; });
 }
 std::vector<std::string> moreNames(const WorkPrecisionTable& table) {
   return namesOf(
@@ -39,7 +39,7 @@ std::vector<std::string> moreNames(const WorkPrecisionTable& table) {
 }
 
 std::vector<std::string> header(const WorkPrecisionTable& table) {
-  std::vector<std::string> names = knobNames(table);
+  std::vector<std::string> names = settingNames(table);
   names.push_back("error [" + table.error_unit + "]");
   names.push_back("error_max [" + table.error_unit + "]");
   names.emplace_back("ns");
@@ -51,9 +51,9 @@ std::vector<std::string> header(const WorkPrecisionTable& table) {
 
 std::vector<std::string> cells(const WorkPrecisionTable& table, const WorkPrecisionRow& row) {
   std::vector<std::string> line;
-  for (const std::string& name : knobNames(table)) {
+  for (const std::string& name : settingNames(table)) {
     std::string cell;
-    for (const auto& [key, value] : row.knobs)
+    for (const auto& [key, value] : row.settings)
       if (key == name) cell = plain(value);
     line.push_back(std::move(cell));
   }
@@ -102,7 +102,7 @@ Json toJson(const WorkPrecisionTable& table) {
   Json rows = Json::array();
   for (const WorkPrecisionRow& row : table.rows) {
     Json line = Json::object();
-    for (const auto& [key, value] : row.knobs) line.set(key, value);
+    for (const auto& [key, value] : row.settings) line.set(key, value);
     line.set("error", row.error).set("error_max", row.error_max);
     line.set("ns", row.ns).set("bytes", row.bytes);
     for (const auto& [key, value] : row.more) line.set(key, value);

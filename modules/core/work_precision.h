@@ -1,4 +1,4 @@
-// Error against run time, in one row: the table every study prints (owner's first demand).
+// Work-precision table (Hairer & Wanner): error against run time, one row per setting.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,13 @@
 namespace patina {
 
 struct WorkPrecisionRow {
-  std::vector<std::pair<std::string, Json>> knobs; // ("sampler", "high"), ("resolution", 150) ...
-  double error = 0;                                // mean or rms, in the table's error_unit
-  double error_max = 0;                            // same unit
-  double ns = 0; // time of one query, or of the whole build if the knobs say so
+  std::vector<std::pair<std::string, Json>>
+      settings;         // ("sampler", "high"), ("resolution", 150) ...
+  double error = 0;     // mean or RMS, in the table's error_unit
+  double error_max = 0; // same unit
+  double ns = 0;        // time of one query, or of the whole build if the settings name it
   double bytes = 0;
-  std::vector<std::pair<std::string, double>>
-      more; // further measured columns, with units in the name
+  std::vector<std::pair<std::string, double>> more; // further columns, names with units
 };
 
 struct WorkPrecisionTable {
@@ -27,14 +27,14 @@ struct WorkPrecisionTable {
   std::string error_unit; // "m", "deg", "%"
   std::vector<WorkPrecisionRow> rows;
   std::optional<double> order_fitted;   // d log error / d log h over successive refinements
-  std::optional<double> order_expected; // theory, with its item in the title
+  std::optional<double> order_expected; // theoretical order; the title cites its source
 };
 
-// Least-squares slope of log(error) on log(h). Needs two points or more, all positive; throws
-// std::invalid_argument otherwise.
+// Least-squares slope of log(error) over log(h). Throws std::invalid_argument unless there are two
+// or more positive, finite points.
 double fittedOrder(const std::vector<double>& h, const std::vector<double>& error);
 
-// Machine, compiler, scheduling policy, load average: so that a published number can be read.
+// Machine, compiler, scheduling policy and load average, to interpret a published number.
 Json machineDescription();
 
 Json toJson(const WorkPrecisionTable& table);

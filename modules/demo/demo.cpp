@@ -1,9 +1,14 @@
 #include "demo/demo.h"
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
 #include <numeric>
+#include <stdexcept>
 
 #include <tbb/parallel_for.h>
 
@@ -12,32 +17,233 @@
 #include "acquisition/simulation/simulated_scan.h"
 #include "acquisition/simulation/simulated_streams.h"
 #include "acquisition/tracking/marker_code.h"
-#include "acquisition/tracking/track_frames.h"
 #include "core/csv.h"
+#include "core/decompose.h"
+#include "core/error.h"
 #include "core/file.h"
-#include "demo/true_contact.h"
+#include "demo/truth_errors.h"
+#include "field/surface/models.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_unit.h"
+#include "geometry/tree/triangle_tree.h"
 #include "haptics/servo/feel.h"
+#include "scan/track_scan.h"
 #include "session/edit/editor.h"
 #include "workspace/texture_file.h"
 
 namespace patina {
 namespace {
 
+constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kSpeed = 0.06; // mean speed of a stroke [m/s]
+
+Vec2 along(const DemoMaterial& material) {
+  return (material.to - material.from).normalized();
+}
+
+// Rounded ridges across the stroke.
+DemoMaterial ribs(const DemoStroke& way) {
+  DemoMaterial ribs{"ribs", {}, 3000, way.from, way.to, 5e-3, 120e-6, {0.83, 0.42, 0.27}};
+  ribs.height = [middle = ribs.from, heading = along(ribs)](const Vec2& place) {
+    const double x = kTwoPi * heading.dot(place - middle) / 5e-3;
+    return 120e-6 * std::cos(x) + 40e-6 * std::cos(2 * x + 1);
+  };
+  return ribs;
+}
+
+// Threads along and across the stroke.
+DemoMaterial weave(const DemoStroke& way) {
+  DemoMaterial weave{"weave", {}, 2000, way.from, way.to, 3e-3, 80e-6, {0.36, 0.56, 0.71}};
+  weave.height = [middle = weave.from, heading = along(weave)](const Vec2& place) {
+    const Vec2 at = place - middle;
+    const double x = heading.dot(at), y = heading.x() * at.y() - heading.y() * at.x();
+    return 80e-6 * std::cos(kTwoPi * x / 3e-3) + 30e-6 * std::cos(kTwoPi * y / 3e-3) +
+           30e-6 * std::cos(kTwoPi * x / 2e-3 + 2);
+  };
+  return weave;
+}
+
+// Waves of many lengths, roughly across the stroke.
+DemoMaterial grain(const DemoStroke& way) {
+  DemoMaterial grain{"grain", {}, 2500, way.from, way.to, 4e-3, 80e-6, {0.55, 0.62, 0.34}};
+  grain.height = [middle = grain.from, heading = along(grain)](const Vec2& place) {
+    struct Wave {
+      double length, turned, height, phase;
+    };
+    constexpr Wave kWaves[] = {{4e-3, 0, 80e-6, 0},       {3.1e-3, 0.3, 45e-6, 1},
+                               {2.3e-3, -0.25, 32e-6, 4}, {5.7e-3, 0.15, 30e-6, 2.5},
+                               {1.7e-3, 0.1, 20e-6, 5},   {2.7e-3, -0.4, 25e-6, 3}};
+    const Vec2 at = place - middle;
+    double height = 0;
+    for (const Wave& wave : kWaves) {
+      const Vec2 across = Eigen::Rotation2Dd(wave.turned) * heading;
+      height += wave.height * std::cos(kTwoPi * across.dot(at) / wave.length + wave.phase);
+    }
+    return height;
+  };
+  return grain;
+}
+
+// Heights of the mesh on a grid, smoothed by a cubic B-spline, which moves them by some
+// micrometres.
+class SmoothHeights {
+ public:
+  explicit SmoothHeights(const TriangleMesh& mesh) : box_(bounds(mesh)) {
+    const TriangleTree tree(mesh);
+    const double top = box_.max().z() + 1e-3, deep = box_.sizes().z() + 2e-3;
+    for (int k = 0; k < 2; ++k) size_[k] = static_cast<int>(box_.sizes()[k] / kGrid) + 4;
+    for (int j = 0; j < size_[1]; ++j)
+      for (int i = 0; i < size_[0]; ++i) {
+        const Vec2 place = box_.min().head<2>() + kGrid * Vec2(i - 1, j - 1);
+        const auto hit = tree.firstHit({place.x(), place.y(), top}, -Vec3::UnitZ(), deep);
+        heights_.push_back(hit ? top - hit->t : std::numeric_limits<double>::quiet_NaN());
+      }
+  }
+
+  double at(const Vec2& place) const {
+    const Vec2 cell = (place - box_.min().head<2>()) / kGrid + Vec2::Ones();
+    const int i = static_cast<int>(cell.x()), j = static_cast<int>(cell.y());
+    if (!(cell.minCoeff() >= 1 && i + 2 < size_[0] && j + 2 < size_[1]))
+      throw Error("a stroke leaves the surface");
+    const std::array<double, 4> x = weights(cell.x() - i), y = weights(cell.y() - j);
+    double height = 0;
+    for (int b = 0; b < 4; ++b)
+      for (int a = 0; a < 4; ++a)
+        height += x[index(a)] * y[index(b)] * heights_[index((j + b - 1) * size_[0] + i + a - 1)];
+    if (!std::isfinite(height)) throw Error("a stroke leaves the surface");
+    return height;
+  }
+
+ private:
+  static constexpr double kGrid = 0.75e-3; // [m]
+
+  static std::array<double, 4> weights(double u) {
+    const double v = 1 - u;
+    return {v * v * v / 6, (4 - 6 * u * u + 3 * u * u * u) / 6, (4 - 6 * v * v + 3 * v * v * v) / 6,
+            u * u * u / 6};
+  }
+
+  Box3 box_;
+  int size_[2] = {};
+  std::vector<double> heights_;
+};
+
+constexpr double kLook = 0.5e-3; // edge length of the faces [m]
+
+std::function<Vec3(const Vec2&)> normalOf(const std::function<double(const Vec2&)>& ground) {
+  return [ground](const Vec2& place) -> Vec3 {
+    const auto slope = [&](const Vec2& aside) {
+      return (ground(place + aside) - ground(place - aside)) / (2 * kLook);
+    };
+    return Vec3(-slope({kLook, 0}), -slope({0, kLook}), 1).normalized();
+  };
+}
+
+void press(SimulatedHand& hand, const Vec2& place) {
+  for (int i = 0; i < 8; ++i) {
+    hand.moves.push_back({place, 0.7, 0, 5.0, 0});
+    hand.moves.push_back({place, 0.3, 0, 0.6, 0});
+  }
+}
+
+} // namespace
+
+DemoObject demoObject() {
+  TriangleMesh mesh = dinosaur();
+  for (Vec3& p : mesh.positions) p *= 2;
+  const Pose side(rotationFromTo(-Vec3::UnitY(), Vec3::UnitZ()));
+  DemoStrokes ways; // [m]
+  ways.ribs = {{-0.078, -0.037}, {-0.030, -0.022}};
+  ways.weave = {{0.036, -0.049}, {0.039, 0.002}};
+  ways.grain = {{0.051, 0.011}, {0.075, 0.047}};
+  ways.grip = {{-0.006, -0.010}, {0.020, -0.006}};
+  ways.survey = {{-0.005, -0.046}, {-0.004, -0.008}, {0.008, 0.003},  {0.012, -0.015},
+                 {0.032, -0.006},  {0.038, -0.040},  {0.040, -0.006}, {0.050, 0.010},
+                 {0.064, 0.038},   {0.086, 0.043},   {0.070, 0.047}};
+  return demoObjectOf("dinosaur", std::move(mesh), side, ways);
+}
+
+DemoObject demoObjectOf(const std::string& name, TriangleMesh mesh, const Pose& plane_from_object,
+                        const DemoStrokes& ways) {
+  if (ways.survey.empty()) throw std::invalid_argument("demoObjectOf: no survey");
+  DemoObject object;
+  object.name = name;
+  object.mesh = std::move(mesh);
+  object.plane_from_object = plane_from_object;
+  object.materials = {ribs(ways.ribs), weave(ways.weave), grain(ways.grain)};
+  object.survey = ways.survey;
+  const TriangleMesh turned =
+      transformed(object.mesh, Eigen::Affine3d(object.plane_from_object.matrix()));
+  object.ground = [heights = std::make_shared<const SmoothHeights>(turned)](const Vec2& place) {
+    return heights->at(place);
+  };
+  for (const auto& way : {ways.ribs, ways.weave, ways.grain, ways.grip})
+    for (const Vec2& end : {way.from, way.to}) object.ground(end);
+  for (const Vec2& place : ways.survey) object.ground(place);
+  object.normal = normalOf(object.ground);
+  object.grip = [ground = object.ground, way = ways.grip](double part) {
+    const Vec2 place = (1 - part) * way.from + part * way.to;
+    return Vec3(place.x(), place.y(), ground(place));
+  };
+  return object;
+}
+
+SimulatedHand handOver(const DemoObject& object, const DemoMaterial& material, std::uint32_t seed) {
+  SimulatedHand hand;
+  hand.seed = seed;
+  hand.from = material.from;
+  const auto& ground = object.ground;
+  hand.relief = [ground, height = material.height](const Vec2& place) {
+    return ground(place) + height(place);
+  };
+  hand.normal = object.normal;
+  hand.travel_height = ground(material.from) + 10e-3;
+  hand.compliance = 1 / material.stiffness;
+  const Vec2 &from = material.from, &to = material.to;
+  hand.moves.push_back({from, 0.5, 0, 0, 0});
+  press(hand, from);
+  hand.moves.push_back({from, 0.3, 0, 1.0, 0});
+  hand.moves.push_back({to, (to - from).norm() / kSpeed, 0, 1.0, 0});
+  hand.moves.push_back({to, 0.2, 0, 0, 0});
+  hand.moves.push_back({to, 0.4, 0, 0, 1});
+  return hand;
+}
+
+SimulatedHand surveyOf(const DemoObject& object, std::uint32_t seed) {
+  SimulatedHand hand;
+  hand.seed = seed;
+  hand.relief = object.ground;
+  hand.normal = object.normal;
+  hand.from = object.survey.at(0);
+  hand.travel_height = hand.relief(hand.from) + 10e-3;
+  hand.compliance = 1. / 5000;
+  hand.moves.push_back({hand.from, 0.5, 0, 0, 0});
+  Vec2 place = hand.from;
+  for (const Vec2& to : object.survey) {
+    hand.moves.push_back({to, 0.2 + (to - place).norm() / kSpeed, 0, 1.0, 0});
+    place = to;
+  }
+  press(hand, place);
+  hand.moves.push_back({place, 0.2, 0, 0, 0});
+  hand.moves.push_back({place, 0.4, 0, 0, 1});
+  return hand;
+}
+
+namespace {
+
 const char* const kFamily = "4x4_50";
-constexpr double kEnds = 0.05; // of a profile: where it was blended, or the hand was slow
-// Harmonics are compared that in the truth are higher than this times the square of their
-// wavelength: 10 times what such a scan leaves of noise [1/m].
+constexpr double kEnds = 0.05; // fraction of a profile at each end, blended or slow
+// Harmonics are compared if the true amplitude exceeds this times the squared wavelength: ten times
+// the noise of such a scan [1/m].
 constexpr double kFloor = 5;
-constexpr double kMillimetre = 1e3; // of an .obj in a metre
+constexpr double kMillimetre = 1e3; // .obj units per metre
 
 Pose objectFromCamera(const Demo& demo) {
   return demo.registered.registration.mesh_from_path;
 }
 
-// As `patina register --truth` reads it.
+// Format for `patina register --truth`.
 std::string truthText(const Demo& demo) {
   return Json::object()
              .set("mesh_from_camera", poseJson(demo.camera_from_object.inverse()))
@@ -45,7 +251,7 @@ std::string truthText(const Demo& demo) {
          "\n";
 }
 
-// Each scan as a folder that every command and the Scan desk open.
+// Writes each scan as a folder that every command and the Scan page open.
 void scan(Demo& demo, Progress& progress) {
   std::filesystem::create_directories(demo.folder);
   writeMesh(demo.folder / "toy.obj", demo.in_file);
@@ -65,15 +271,15 @@ void scan(Demo& demo, Progress& progress) {
   for (std::size_t i = 0; i < demo.scans.size(); ++i) {
     DemoScan& one = demo.scans[i];
     const std::filesystem::path folder = demo.folder / ("scan-" + one.name);
-    FrameCourse course;
-    course.camera_from_world = camera_from_plane;
+    CaptureSettings course;
     course.seed = ++seed;
     Progress part(progress, [&](double fraction, std::string_view what) {
       progress.report((static_cast<double>(i) + fraction) / static_cast<double>(demo.scans.size()),
                       what);
     });
     one.frames =
-        writeFrames(folder, usualCamera(), one.hand, demo.rig.probe, kFamily, course, part);
+        writeFrames(folder, usualCamera(), motionOf(one.hand, demo.rig.probe, camera_from_plane),
+                    one.hand.seconds(), cube, course, part);
     one.streams.samples = simulateProbe(one.hand, demo.rig.probe, {}, ++seed);
     writeProbeStream(folder / "probe.csv", one.streams.samples);
     writeFileAtomically(folder / "rig.json", rigText(demo.rig, cube));
@@ -90,13 +296,12 @@ Pose cameraFromPlane(const Demo& demo) {
 
 void trackOne(const Demo& demo, DemoScan& one, Progress& progress) {
   const std::filesystem::path folder = demo.folder / ("scan-" + one.name);
-  const auto frames = openFrames(folder.string(), 0);
-  const TrackedFrames found = trackFrames(*frames, readCamera(folder / "camera.yml"),
-                                          readMarkers(folder / "rig.json"), {}, progress);
+  const std::filesystem::path rig = folder / "rig.json";
+  const TrackedFrames found = trackScan(
+      {folder.string(), readCamera(folder / "camera.yml"), readMarkers(rig), rig}, progress);
   progress.throwIfCancelled();
   if (found.poses.empty()) throw Error(one.name + ": no frame shows a pose of the markers");
-  writePoses(folder / "poses.tum", found.poses, found.without);
-  // As any command reads them.
+  writePoses(folder / "poses.tum", found.poses, found.without, found.rig_doubt);
   one.streams.poses = readPoses(folder / "poses.tum").values;
   one.streams.samples = readProbeStream(folder / "probe.csv").values;
   double squares = 0;
@@ -121,7 +326,7 @@ void track(Demo& demo, Progress& progress) {
 
 void filter(Demo& demo, Progress& progress) {
   for (DemoScan& one : demo.scans) {
-    one.filtered = touchedPath(one.streams, demo.rig, progress);
+    one.filtered = contactPath(one.streams, demo.rig, progress);
     std::vector<double> times;
     for (const PathSample& sample : one.filtered.path) times.push_back(sample.t);
     one.path_error = errorOf(one.filtered.path, truthAt(one.hand, cameraFromPlane(demo), times));
@@ -150,8 +355,8 @@ void registerAll(Demo& demo, Progress& progress) {
   demo.registration_error = std::sqrt(squares / count);
 }
 
-// Heights over the true ground along the line that the hand was to follow, by their true way over
-// it: nothing that was measured has a part in it.
+// Heights above the true surface along the planned stroke, by its true arc length; uses no
+// measurement.
 std::vector<ProfilePoint> trueProfile(const DemoObject& object, const DemoMaterial& material) {
   constexpr double kStep = 0.05e-3; // [m]
   const double length = (material.to - material.from).norm();
@@ -174,9 +379,9 @@ void fit(Demo& demo, Progress&) {
     demo.textures.emplace_back();
     DemoTexture& texture = demo.textures.back();
     texture.scanned = fitScanTexture(demo.target, one.filtered, one.streams.poses, demo.rig,
-                                     demo.registered.paths[i], demo.registered.of(i));
+                                     scanPlace(demo.registered.paths[i], demo.registered.of(i)));
     FourierTexture& fitted = texture.scanned.fitted.texture;
-    fitted.name = "scan-" + one.name; // as its folder
+    fitted.name = "scan-" + one.name; // name of its folder
     writeHeights(demo.folder / ("heights-" + one.name + ".csv"), texture.scanned.heights);
     writeTexture(demo.folder / (one.name + ".json"), fitted);
     texture.spectrum = spectrumError(fitted, trueProfile(demo.object, demo.object.materials[i]),
@@ -196,7 +401,7 @@ void map(Demo& demo, Progress& progress) {
   writeTexturedMesh(demo.folder / "textured.obj", demo.in_file, faces, 1 / kMillimetre);
 }
 
-// Along the way that was scanned, coloured; friction where nothing was scanned.
+// Strokes along the scanned paths, coloured; friction where nothing was scanned.
 std::vector<Stroke> paintStrokes(const Demo& demo) {
   std::vector<Stroke> strokes;
   for (std::size_t i = 0; i < demo.textures.size(); ++i) {
@@ -216,8 +421,8 @@ std::vector<Stroke> paintStrokes(const Demo& demo) {
   grip.brush.color = {0.2, 0.2, 0.22};
   grip.brush.radius = 7e-3;
   grip.brush.falloff = 4;
-  grip.brush.also = {{Tool::material(MaterialChannel::static_friction), {}, 0.8},
-                     {Tool::material(MaterialChannel::dynamic_friction), {}, 0.6}};
+  grip.brush.extra_layers = {{Tool::material(MaterialChannel::static_friction), {}, 0.8},
+                             {Tool::material(MaterialChannel::dynamic_friction), {}, 0.6}};
   for (int k = 0; k <= 40; ++k)
     grip.samples.push_back({k * 8e-3, object_from_plane * demo.object.grip(k / 40.), 1, {}});
   strokes.push_back(std::move(grip));
@@ -233,12 +438,13 @@ void paint(Demo& demo, Progress& progress) {
   demo.compiled = editor.compiled();
 }
 
-constexpr double kDepth = 0.5e-3; // below the mesh, of the tip that feels [m]
-constexpr double kStep = 0.04e-3; // it goes a tick [m]
-constexpr double kAside = 0.8e-3; // the nearest point of the true surface is not farther aside [m]
+constexpr double kDepth = 0.5e-3; // depth of the tip below the mesh [m]
+constexpr double kStep = 0.04e-3; // step per tick [m]
+constexpr double kMaxLateralDistance =
+    0.8e-3; // max lateral distance of the nearest true surface point [m]
 constexpr int kLandingTicks = 100;
 
-// A tip that comes down, yields to half its depth and back, and goes along the stroke.
+// Lowers the tip, raises it to half its depth and back, then moves it along the stroke.
 void feelOne(Demo& demo, std::size_t i, Progress& progress) {
   const DemoMaterial& material = demo.object.materials[i];
   const auto& ground = demo.object.ground;
@@ -251,7 +457,7 @@ void feelOne(Demo& demo, std::size_t i, Progress& progress) {
     const Vec2 place = placeAt(s);
     return Vec3(place.x(), place.y(), ground(place)) + height * hand.normal(place);
   };
-  // Where the ends were blended, and the hand was slow, nothing is claimed.
+  // Ends, which are blended or slow, are not evaluated.
   const double begin = 0.08 * length, end = (1 - kEnds - 0.02) * length;
   std::vector<TimedTip> tips;
   std::vector<Vec3> in_plane;
@@ -289,15 +495,15 @@ void feelOne(Demo& demo, std::size_t i, Progress& progress) {
   for (std::size_t k = first; k < tips.size(); ++k) {
     if (k % 256 == 0) progress.throwIfCancelled();
     if (k > first) along += (in_plane[k] - in_plane[k - 1]).norm();
-    FeltPoint point;
+    ForcePoint point;
     point.along = along;
     point.outward = hand.normal(in_plane[k].head<2>());
     point.felt = felt(k);
-    point.truth = trueForce(surface, in_plane[k], material.stiffness, kAside);
+    point.truth = referenceForce(surface, in_plane[k], material.stiffness, kMaxLateralDistance);
     rows.rows.push_back({along, point.felt.dot(point.outward), point.truth.dot(point.outward)});
     texture.felt.push_back(point);
   }
-  texture.felt_error = feltError(texture.felt);
+  texture.force_error = forceError(texture.felt);
   writeCsv(demo.folder / ("felt-" + material.name + ".csv"), rows);
 }
 
@@ -308,11 +514,7 @@ void feelAll(Demo& demo, Progress& progress) {
   }
 }
 
-} // namespace
-
-namespace {
-
-// The mesh as its file has it, and as every command reads that: to the last bit.
+// Writes and reads the mesh as its file has it, so that it equals the commands' mesh bit for bit.
 const TriangleMesh& throughFile(TriangleMesh& in_file, TriangleMesh& mesh) {
   for (Vec3& p : in_file.positions) p *= kMillimetre;
   return mesh = inMetres(in_file, MeshUnit::mm).mesh;
@@ -329,11 +531,12 @@ const std::vector<DemoStep>& demoSteps() {
       {"scan", "A hand scans three materials and surveys the toy; a camera films its probe.", scan},
       {"track", "Markers in the frames become poses of the probe.", track},
       {"filter", "Poses and accelerations become the tip's path.", filter},
-      {"register", "The paths find their place on the mesh.", registerAll},
+      {"register", "The paths are registered to the mesh.", registerAll},
       {"fit", "Accelerations become heights, heights become harmonics.", fit},
-      {"map", "Each texture is laid onto the faces that its stroke ran over.", map},
-      {"paint", "Colour and friction are painted beside what was scanned.", paint},
-      {"feel", "A tip feels the result, and the true surface beside it.", feelAll}};
+      {"map", "Each texture is mapped to the faces under its stroke.", map},
+      {"paint", "Colour and friction are painted beside the scanned areas.", paint},
+      {"feel", "A tip touches the result, and its force is compared with that of the true surface.",
+       feelAll}};
   return kSteps;
 }
 

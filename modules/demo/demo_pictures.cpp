@@ -33,8 +33,8 @@ void drawHeights(const DemoTexture& texture, const std::string& name,
   const FittedTexture& fitted = texture.scanned.fitted;
   double last = -1;
   for (const ScanHeight& height : texture.scanned.heights) {
-    if (height.point.along < last + 0.1e-3) continue;
-    last = height.point.along;
+    if (height.point.arc_length < last + 0.1e-3) continue;
+    last = height.point.arc_length;
     measured.x.push_back(kMilli * last);
     measured.y.push_back(kMicro * height.point.height);
     kept.x.push_back(kMilli * last);
@@ -65,7 +65,7 @@ void drawFelt(const DemoTexture& texture, const std::string& name,
               const std::filesystem::path& file) {
   Plot plot{name + ": force outwards", "way [mm]", "force [N]", false, false, {}};
   PlotSeries felt = lineOf("felt"), truth = lineOf("true surface");
-  for (const FeltPoint& point : texture.felt) {
+  for (const ForcePoint& point : texture.felt) {
     felt.x.push_back(kMilli * point.along);
     felt.y.push_back(point.felt.dot(point.outward));
     truth.x.push_back(kMilli * point.along);
@@ -79,7 +79,7 @@ void drawFelt(const DemoTexture& texture, const std::string& name,
 
 DrawnPath demoPaths(const Demo& demo) {
   DrawnPath path;
-  const bool registered = !demo.registered.registration.misses.empty();
+  const bool registered = !demo.registered.registration.residuals.empty();
   path.title = registered ? "distance [mm]" : "force [N]";
   const Pose object_from_camera =
       registered ? demo.registered.registration.mesh_from_path : demo.camera_from_object.inverse();
@@ -88,7 +88,7 @@ DrawnPath demoPaths(const Demo& demo) {
     bool begins = true;
     for (const PathSample& sample : demo.scans[s].filtered.path) {
       const double value =
-          registered ? 1e3 * demo.registered.registration.misses[i].distance : sample.force;
+          registered ? 1e3 * demo.registered.registration.residuals[i].distance : sample.force;
       path.samples.push_back({sample.t + 1e3 * static_cast<double>(s),
                               object_from_camera * sample.position, value, false, begins});
       begins = false;
@@ -104,7 +104,6 @@ std::vector<std::string> drawDemo(const Demo& demo) {
     names.push_back(name);
     return demo.folder / name;
   };
-  // What the camera saw in the middle of the first stroke.
   char frame[40];
   std::snprintf(frame, sizeof frame, "frames/%06zu.png", 3 * demo.scans[0].frames / 4);
   const std::filesystem::path seen = demo.folder / ("scan-" + demo.scans[0].name) / frame;

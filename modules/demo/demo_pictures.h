@@ -1,4 +1,4 @@
-// The demonstration drawn.
+// Pictures of the demonstration.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace patina {
 
-// All paths that there are, object frame: where they lie on the toy, coloured by their distance
-// from it, once they are registered; before that where the camera saw them, by force.
+// All paths in the object frame: once registered on the toy, coloured by distance; before that in
+// the camera's frame, coloured by force.
 DrawnPath demoPaths(const Demo& demo);
 
-// Pictures of every step of a demo that is done, into its folder; their names. Throws Error without
-// a display.
+// Writes pictures of every step of a finished demo into its folder and returns their names. Throws
+// Error without a display.
 std::vector<std::string> drawDemo(const Demo& demo);
 
 } // namespace patina

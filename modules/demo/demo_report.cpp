@@ -8,9 +8,9 @@
 namespace patina {
 namespace {
 
-// What `patina demo` promises.
+// Limits that `patina demo` guarantees.
 constexpr double kRegistration = 0.2e-3, kLag = 0.3e-3; // [m]
-constexpr double kWavelength = 0.01, kStiffness = 0.05, kVariation = 0.3, kWhole = 0.1;
+constexpr double kWavelength = 0.01, kStiffness = 0.05, kTextureError = 0.3, kRelativeError = 0.1;
 constexpr double kDecibels = 2;
 
 double off(double value, double truth) {
@@ -56,12 +56,13 @@ std::vector<DemoFigure> demoFigures(const Demo& demo) {
     figures.push_back({"fit", "stiffness, scanned", of,
                        off(stiffnessOf(texture), material.stiffness), kStiffness, ""});
     if (steps < demoSteps().size()) continue;
-    const FeltError& felt = texture.felt_error;
+    const ForceError& felt = texture.force_error;
     figures.push_back({"feel", "stiffness, felt against scanned", of,
                        off(texture.stiffness, stiffnessOf(texture)), kStiffness, ""});
-    figures.push_back({"feel", "lag along the path", of, felt.lag, kLag, "m"});
-    figures.push_back({"feel", "variation of the force", of, felt.variation, kVariation, ""});
-    figures.push_back({"feel", "whole force", of, felt.whole, kWhole, ""});
+    figures.push_back({"feel", "lag along the path", of, felt.spatial_lag, kLag, "m"});
+    figures.push_back(
+        {"feel", "variation of the force", of, felt.texture_error, kTextureError, ""});
+    figures.push_back({"feel", "whole force", of, felt.relative_error, kRelativeError, ""});
   }
   return figures;
 }
@@ -91,23 +92,23 @@ Json demoJson(const Demo& demo) {
         .set("wavelength_found", texture.spectrum.wavelength);
     json.set("amplitude", texture.spectrum.true_amplitude)
         .set("amplitude_found", texture.spectrum.amplitude);
-    json.set("harmonics_compared", texture.spectrum.compared);
-    json.set("worst_harmonic_stretched", texture.spectrum.stretched);
+    json.set("harmonics_compared", texture.spectrum.harmonic_count);
+    json.set("worst_harmonic_stretched", texture.spectrum.with_scale_error);
     json.set("faces", texture.scanned.laid.faces.size());
-    json.set("true_variation", texture.felt_error.true_variation);
+    json.set("true_variation", texture.force_error.true_variation);
     materials.push(json);
   }
   bool all = true;
   for (const DemoFigure& figure : demoFigures(demo)) {
-    all = all && figure.holds();
+    all = all && figure.passes();
     figures.push(Json::object()
                      .set("step", figure.step)
                      .set("what", figure.what)
                      .set("of", figure.of)
                      .set("value", figure.value)
-                     .set("most", figure.most)
+                     .set("most", figure.limit)
                      .set("unit", figure.unit)
-                     .set("holds", figure.holds()));
+                     .set("holds", figure.passes()));
   }
   Json json = Json::object();
   json.set("program", programDescription());
@@ -119,9 +120,9 @@ Json demoJson(const Demo& demo) {
 std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictures) {
   std::string text = "# From a scan to a feel\n\n"
                      "A toy dinosaur of 200 mm with three materials, scanned by a simulated hand. "
-                     "Every figure is an error\nagainst what the simulation knows; forces are "
-                     "compared with those of the true surface, found by looking at\nits heights "
-                     "and not by our field, contact or textures.\n\nMade by patina " +
+                     "Every figure is an error\nagainst the simulation's ground truth; forces are "
+                     "compared with a reference computed from the\ntrue heights, without our "
+                     "field, contact or textures.\n\nMade by patina " +
                      versionText() + ", seed " + std::to_string(demo.seed) + ".\n\n## Steps\n\n";
   text += row({"step", "", "time [s]"}) + "|---|---|---|\n";
   for (std::size_t i = 0; i < demo.seconds.size(); ++i)
@@ -136,9 +137,8 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
                  std::to_string(scan.streams.poses.size()) + " of " + std::to_string(scan.frames),
                  formatLength(scan.tip_error), formatLength(scan.path_error.rms),
                  formatNumber(std::round(scan.path_error.nees * 100) / 100)});
-  text += "\nNEES is the squared error of a sample over the variance that the filter states for "
-          "it, on the "
-          "mean: 1 where the\nstated variance is right.\n";
+  text += "\nNEES is the squared error of a sample over its stated variance, on the "
+          "mean: 1 if the\nvariance is right.\n";
   text += "\n## Materials\n\n" +
           row({"material", "path [mm]", "wavelength [mm]", "found", "amplitude", "found",
                "stiffness [N/m]", "found", "faces"}) +
@@ -154,18 +154,17 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
          formatNumber(std::round(stiffnessOf(texture))),
          std::to_string(texture.scanned.laid.faces.size())});
   }
-  text += "\nNoise grows as the square of the wavelength. Compared with the truth are its highest "
-          "harmonic and those\nabove 5 um at 1 mm, growing as the square.\n\n## Errors\n\n" +
+  text += "\nNoise grows as the square of the wavelength. The strongest true harmonic is compared, "
+          "and those\nabove 5 um at 1 mm, a limit that grows as the square.\n\n## Errors\n\n" +
           row({"step", "error of", "material", "found", "at most", ""}) +
           "|---|---|---|---|---|---|\n";
   for (const DemoFigure& figure : demoFigures(demo))
     text += row({figure.step, figure.what, figure.of, figureText(figure.value, figure.unit),
-                 figureText(figure.most, figure.unit), figure.holds() ? "holds" : "**missed**"});
-  text += "\nThe variation of the force is compared after one lag for each 10 mm is taken off, "
-          "which has "
-          "a row of its own.\n\n## Pictures\n";
+                 figureText(figure.limit, figure.unit), figure.passes() ? "holds" : "**missed**"});
+  text += "\nThe variation of the force is compared after the removal of one lag per 10 mm, "
+          "which has a row of its own.\n\n## Pictures\n";
   if (pictures.empty())
-    text += "\nThere was no display to draw them with; `xvfb-run -a patina demo` brings one.\n";
+    text += "\nThere was no display for the pictures; `xvfb-run -a patina demo` provides one.\n";
   for (const std::string& picture : pictures)
     text += "\n![" + picture.substr(0, picture.find('.')) + "](" + picture + ")\n";
   text += "\n## The same by commands\n\n"
@@ -175,9 +174,9 @@ std::string demoMarkdown(const Demo& demo, const std::vector<std::string>& pictu
           "and one by one:\n\n"
           "    patina track scan-ribs -o scan-ribs/poses.tum\n"
           "    patina filter scan-ribs -o path-ribs.csv\n"
-          "    patina register toy.obj path-ribs.csv --also path-weave.csv --also path-grain.csv "
-          "\\\n        --also path-survey.csv -o registered.csv --report r.json\n"
-          "    patina filter scan-ribs -o path.csv --heights heights.csv --over toy.obj "
+          "    patina register toy.obj path-ribs.csv --with path-weave.csv --with path-grain.csv "
+          "\\\n        --with path-survey.csv -o registered.csv --report r.json\n"
+          "    patina filter scan-ribs -o path.csv --heights heights.csv --reference-mesh toy.obj "
           "--registration r.json\n"
           "    patina fit-texture heights.csv -o texture.json --registration r.json --name ribs\n"
           "    patina map-texture toy.obj registered.csv -o mine.obj --heights heights.csv\n"

@@ -1,4 +1,4 @@
-// What the demonstration found, for a person and for a program, with what each figure must hold.
+// Report of the demonstration as text and JSON, with a limit for each figure.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 namespace patina {
 
 struct DemoFigure {
-  std::string step, what, of;                  // `of`: a material, or empty
-  double value = 0, most = 0;                  // SI
-  std::string unit;                            // "m", "dB", "" for a ratio
-  bool holds() const { return value <= most; } // not where it is no number
+  std::string step, what, of;                    // `of`: a material, or empty
+  double value = 0, limit = 0;                   // SI
+  std::string unit;                              // "m", "dB", "" for a ratio
+  bool passes() const { return value <= limit; } // false for NaN
 };
-// "0.08 mm", "0.52 dB", "14.9 %" for a value in the unit of a figure.
+// Formats a value in a figure's unit: "0.08 mm", "0.52 dB", "14.9 %".
 std::string figureText(double value, const std::string& unit);
-// Errors against the truth, of the steps that ran.
+// Errors against the ground truth, of the finished steps.
 std::vector<DemoFigure> demoFigures(const Demo& demo);
 
 Json demoJson(const Demo& demo);

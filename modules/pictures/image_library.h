@@ -1,5 +1,4 @@
-// The library of pictures, loaded when it is first asked for. For what reads and writes
-// picture files.
+// Picture library for reading and writing files, loaded at first use.
 #pragma once
 
 #include <string>
@@ -8,7 +7,7 @@
 
 namespace patina {
 
-// Throws FileError(name) saying what is missing and where it was looked for.
+// Throws FileError(name) naming the missing part and where it was searched.
 const ImageLibrary& imageLibrary(const std::string& name);
 
 // Throws FileError(name) unless every value is a finite number.

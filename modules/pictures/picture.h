@@ -10,7 +10,7 @@ namespace patina {
 struct Picture {
   int width = 0, height = 0, channels = 0;
   std::vector<float> texel; // channel fastest, then along a row
-  // How a viewer turns it, EXIF's 1 to 8; the texels are as the file has them.
+  // EXIF orientation 1 to 8 for display; texels are stored as in the file.
   int orientation = 1;
 };
 

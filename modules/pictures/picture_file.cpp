@@ -50,7 +50,7 @@ bool isPictureByContent(const std::filesystem::path& path) {
     return all.substr(at, magic.size()) == magic;
   };
   using namespace std::string_view_literals;
-  // A bitmap's two letters are too few: its next field is the size of a header.
+  // A bitmap's two letters are too few; its next field is the size of a header.
   const bool bitmap =
       has("BM"sv) && (all[14] == 12 || (all[14] >= 40 && all[14] <= 124)) && has("\0\0\0"sv, 15);
   const bool portable = head[0] == 'P' &&
@@ -67,7 +67,7 @@ bool isPictureByContent(const std::filesystem::path& path) {
 
 Picture readPicture(const std::filesystem::path& path) {
   const std::string name = path.string();
-  // Our own words for what the library would put in its own, or crash on.
+  // Replaces the library's messages for files on which it would fail or crash.
   std::error_code code;
   if (!std::filesystem::exists(path, code)) throw FileError(name, 0, "does not exist");
   if (!std::filesystem::is_regular_file(path, code)) throw FileError(name, 0, "is not a file");

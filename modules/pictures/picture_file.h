@@ -1,5 +1,5 @@
-// Pictures on disk, through OpenImageIO, which is loaded with the first of them (linking it would
-// cost every start 170 ms).
+// Picture files by OpenImageIO, which is loaded at first use (linking it would add 170 ms to every
+// start).
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 
 namespace patina {
 
-// PNG, JPEG, TIFF, EXR and what else OpenImageIO reads; the first image of a file. Bounded: at most
-// 16384 texels a side. Throws FileError naming file and cause, also where the library is missing.
+// Reads PNG, JPEG, TIFF, EXR and other formats of OpenImageIO; the first image of a file, at most
+// 16384 texels a side. Throws FileError naming file and cause, also if the library is missing.
 Picture readPicture(const std::filesystem::path& path);
 
-// Whether a file begins as a picture does, whatever its name: PNG, JPEG, TIFF, WebP, BMP, PNM, GIF,
-// EXR, HDR, JPEG 2000, HEIF, PSD, DPX. Not whether all of it can be read.
+// Returns true if a file begins like a picture, regardless of its name: PNG, JPEG, TIFF, WebP, BMP,
+// PNM, GIF, EXR, HDR, JPEG 2000, HEIF, PSD, DPX. The rest may still be unreadable.
 bool isPictureByContent(const std::filesystem::path& path);
 
-// By the extension: .png 16 bits a channel, or 8 (values clamped to [0, 1]), .exr 32-bit floats,
-// bit for bit. Atomic.
+// Writes by extension: .png with 16 or 8 bits a channel (values clamped to [0, 1]), .exr with
+// 32-bit floats, bit for bit. Atomic.
 void writePicture(const std::filesystem::path& path, const Picture& picture, int bits = 16);
 
 } // namespace patina

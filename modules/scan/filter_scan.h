@@ -1,4 +1,4 @@
-// A scan's poses and its probe's stream become the tip's path.
+// Filters a scan's poses and probe samples into the tip's path.
 #pragma once
 
 #include <vector>
@@ -8,18 +8,23 @@
 
 namespace patina {
 
-// What came of one scan: its poses and the probe's stream, on one clock.
+// Poses and probe samples of one scan, on one clock.
 struct ScanStreams {
   std::vector<CameraPose> poses;
-  std::vector<ProbeSample> samples; // forces are those that press
+  std::vector<ProbeSample> samples;   // pressing forces are positive
+  std::vector<RateSample> rates = {}; // gyroscope; empty without one
 };
 
-// How a scan is filtered unless somebody says otherwise: camera and accelerometers together where
-// the rig names accelerometers and the probe was heard, else the camera's poses alone.
+// Default filter: camera and accelerometers together if the rig names accelerometers and there are
+// probe samples, otherwise the camera's poses alone.
 ScanFilter filterOf(const std::optional<Rig>& rig, bool has_probe);
 
-// Throws Error where the probe never touches, and as filterScan() does.
-FilteredScan touchedPath(const ScanStreams& streams, const std::optional<Rig>& rig,
+// Throws as filterScan() does, and Error if the poses are not in metres. Without a rig the path is
+// that of the poses' origin.
+FilteredScan filterStreams(const ScanStreams& streams, const std::optional<Rig>& rig,
+                           const ScanFilter& filter, Progress& progress);
+// The same as filterOf() has it. Throws Error where the probe never touches.
+FilteredScan contactPath(const ScanStreams& streams, const std::optional<Rig>& rig,
                          Progress& progress);
 
 } // namespace patina

@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "acquisition/files/registered_file.h"
-#include "acquisition/tracking/track_frames.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json.h"
@@ -16,18 +15,18 @@
 #include "scan/filter_scan.h"
 #include "scan/scan_files.h"
 #include "scan/scan_texture.h"
+#include "scan/track_scan.h"
 #include "session/edit/editor.h"
 #include "workspace/texture_file.h"
 
 namespace patina {
 namespace {
 
-// One scan on its way.
 struct Run {
   std::filesystem::path folder;
   bool textured = false;
   ScanFiles files{};
-  ScanStep from = ScanStep::track; // of track and filter
+  ScanStep from = ScanStep::track; // track or filter
   std::optional<FilteredScan> filtered{};
 };
 
@@ -49,7 +48,7 @@ class Runner {
           throw Error(runs_[i].folder.string() + ": is named twice");
     if (!options.workspace.empty() && std::filesystem::exists(options.workspace))
       throw FileError(options.workspace.string(), 0,
-                      "is there already; name another, or remove it");
+                      "exists already; choose another, or remove it");
     if (areOne(options.mesh, options.folders[0] / "textured.obj"))
       throw FileError(options.mesh.string(), 0,
                       "is what the scan's mesh is written to; name another");
@@ -59,10 +58,13 @@ class Runner {
     readMeshFile();
     for (Run& one : runs_) {
       one.files = readScanFolder(one.folder, progress_);
-      report_.warnings.insert(report_.warnings.end(), one.files.warnings.begin(),
-                              one.files.warnings.end());
+      warn(one.files.warnings);
       one.from = options_.from.value_or(firstToRun(one));
     }
+    std::vector<std::filesystem::path> folders;
+    for (const Run& one : runs_) folders.push_back(one.folder);
+    tip_radius_ = options_.tip_radius ? *options_.tip_radius : tipRadiusOf(folders);
+    target_.emplace(cleaned(mesh_).mesh, tip_radius_, true);
     for (Run& one : runs_)
       if (one.from <= ScanStep::track) track(one);
     if (options_.to >= ScanStep::filter)
@@ -77,6 +79,10 @@ class Runner {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  void warn(const std::vector<std::string>& lines, const std::string& of = "") {
+    for (const std::string& line : lines) report_.warnings.push_back(of + line);
+  }
 
   void note(ScanStep step, const std::filesystem::path& folder, Clock::time_point begin,
             const std::string& found, const Json& json) {
@@ -96,9 +102,8 @@ class Runner {
       report_.warnings.push_back(options_.mesh.string() + ": " + scaled.warning);
     scale_ = scaled.scale;
     mesh_ = std::move(scaled.mesh);
-    TriangleMesh clean = cleaned(mesh_).mesh;
-    if (clean.triangles.empty()) throw FileError(options_.mesh.string(), 0, "has no triangle");
-    target_.emplace(std::move(clean), 0, true);
+    if (cleaned(mesh_).mesh.triangles.empty())
+      throw FileError(options_.mesh.string(), 0, "has no triangle");
   }
 
   static ScanStep firstToRun(const Run& one) {
@@ -106,12 +111,23 @@ class Runner {
     return one.files.poses.empty() ? ScanStep::track : ScanStep::filter;
   }
 
-  // What a registration follows from, as one word.
+  // Returns true if an earlier run has registered the scan and was certain of its pose.
+  static bool isCertain(const Run& one) {
+    const std::filesystem::path file = one.folder / "registration.json";
+    if (!std::filesystem::exists(file) || !std::filesystem::exists(one.folder / "registered.csv"))
+      return false;
+    const Json json = parseJson(readFile(file), file.string());
+    const Json* certain = json.find("certain");
+    return certain && certain->asBool();
+  }
+
+  // Hash of the registration's inputs.
   std::string inputs() const {
     std::vector<std::string> parts;
     for (const Run& one : runs_) parts.push_back(sha256OfFile(one.folder / "path.csv"));
     std::sort(parts.begin(), parts.end());
     std::string all = sha256OfFile(options_.mesh) + std::string(name(options_.unit));
+    if (tip_radius_ > 0) all += formatNumber(tip_radius_);
     for (const std::string& part : parts) all += part;
     return sha256(all);
   }
@@ -120,12 +136,11 @@ class Runner {
     if (options_.from) return *options_.from <= ScanStep::register_paths;
     const std::string now = inputs();
     return std::any_of(runs_.begin(), runs_.end(), [&](const Run& one) {
+      if (!isCertain(one)) return true;
       const std::filesystem::path file = one.folder / "registration.json";
-      if (!std::filesystem::exists(file) || !std::filesystem::exists(one.folder / "registered.csv"))
-        return true;
       const Json json = parseJson(readFile(file), file.string());
-      const Json *before = json.find("inputs"), *certain = json.find("certain");
-      return !before || before->asString() != now || !certain || !certain->asBool();
+      const Json* before = json.find("inputs");
+      return !before || before->asString() != now;
     });
   }
 
@@ -134,15 +149,14 @@ class Runner {
     if (!one.files.canTrack())
       throw FileError(one.folder.string(), 0,
                       "has no frames with a camera.yml and a rig.json that names markers");
-    const auto frames = openFrames(one.folder.string(), 0);
-    const TrackedFrames found =
-        trackFrames(*frames, *one.files.camera, one.files.markers, {}, progress_);
+    const TrackScanReport found = trackScan(
+        {one.folder.string(), *one.files.camera, one.files.markers, one.folder / "rig.json"},
+        progress_);
     progress_.throwIfCancelled();
-    for (const std::string& line : warningsOf(found, one.folder.string(), one.folder / "rig.json"))
-      report_.warnings.push_back(line);
+    warn(found.warnings);
     if (found.poses.empty())
       throw FileError(one.folder.string(), 0, "no frame shows a pose of the markers");
-    writePoses(one.folder / "poses.tum", found.poses, found.without);
+    writePoses(one.folder / "poses.tum", found.poses, found.without, found.rig_doubt);
     one.files.poses = readPoses(one.folder / "poses.tum").values;
     note(ScanStep::track, one.folder, begin,
          formatCount(found.poses.size()) + " of " + formatCount(found.frames) +
@@ -157,13 +171,13 @@ class Runner {
     const auto begin = Clock::now();
     if (one.files.poses.empty()) throw FileError(one.folder.string(), 0, "has no poses.tum");
     try {
-      one.filtered = touchedPath({one.files.poses, one.files.probe}, one.files.rig, progress_);
+      one.filtered = contactPath({one.files.poses, one.files.probe, one.files.rates}, one.files.rig,
+                                 progress_);
     } catch (const Error& error) {
       throw FileError(one.folder.string(), 0, error.what());
     }
     if (!writes) return;
-    for (const std::string& doubt : one.filtered->doubts)
-      report_.warnings.push_back(one.folder.string() + ": " + doubt);
+    warn(one.filtered->warnings, one.folder.string() + ": ");
     writePath(one.folder / "path.csv", one.filtered->path);
     note(ScanStep::filter, one.folder, begin, formatCount(one.filtered->path.size()) + " samples",
          Json::object()
@@ -171,45 +185,53 @@ class Runner {
              .set("nis_mean", one.filtered->track.nis_mean));
   }
 
-  // Returns false where the place is not certain.
+  // Returns false if the pose is uncertain.
   bool registerAll() {
     const auto begin = Clock::now();
     std::vector<std::vector<PathSample>> paths;
-    for (const Run& one : runs_) paths.push_back(readPath(one.folder / "path.csv"));
+    ScanRegistrationOptions options = options_.registration;
+    for (const Run& one : runs_) {
+      paths.push_back(readPath(one.folder / "path.csv"));
+      options.names.push_back((one.folder / "path.csv").string());
+    }
     try {
-      report_.registered =
-          registerScans(*target_, std::move(paths), options_.registration, progress_);
+      report_.registered = registerScans(*target_, std::move(paths), options, progress_);
+    } catch (const FileError&) {
+      throw;
     } catch (const Error& error) {
       throw FileError(options_.mesh.string(), 0, error.what());
     }
     const RegisteredScans& found = *report_.registered;
-    for (const FreeMotion& motion : found.registration.free)
-      report_.warnings.push_back(options_.mesh.string() + ": the scans are " + inWords(motion) +
-                                 ": the mesh does not say where along that they lie");
-    for (const std::string& line : found.doubts)
-      report_.warnings.push_back(options_.mesh.string() + ": " + line);
-    report_.warnings.insert(report_.warnings.end(), found.warnings.begin(), found.warnings.end());
+    warn(warningsOf(found, options_.mesh.string()));
+    if (isUnreliable(found.registration) &&
+        std::all_of(runs_.begin(), runs_.end(), [](const Run& one) { return isCertain(one); })) {
+      report_.warnings.push_back((runs_[0].folder / "registration.json").string() +
+                                 ": the certain pose of an earlier run is kept; remove the file to "
+                                 "have this one");
+      return false;
+    }
     for (std::size_t i = 0; i < runs_.size(); ++i) {
       const Registration own = found.of(i);
       writeRegisteredPath(runs_[i].folder / "registered.csv", found.paths[i], own);
       const auto counts =
-          static_cast<std::size_t>(std::count(own.counts.begin(), own.counts.end(), true));
+          static_cast<std::size_t>(std::count(own.inliers.begin(), own.inliers.end(), true));
       const Json json =
           Json::object()
               .set("mesh_from_scan", poseJson(own.mesh_from_path))
               .set("compliance", own.compliances[0])
+              .set("compliance_deviation", own.compliance_deviations[0])
               .set("rms", own.rms)
-              .set("samples", Json::object().set("all", own.counts.size()).set("count", counts))
+              .set("samples", Json::object().set("all", own.inliers.size()).set("count", counts))
               .set("converged", own.converged)
-              .set("certain", !isDoubtful(found.registration))
+              .set("certain", !isUnreliable(found.registration))
               .set("inputs", inputs());
       writeFileAtomically(runs_[i].folder / "registration.json", json.dump() + "\n");
       note(ScanStep::register_paths, runs_[i].folder, begin,
            formatLength(own.rms) + " rms off the mesh, " + formatLength(own.compliances[0]) +
-               " a newton",
+               " ± " + formatLength(own.compliance_deviations[0]) + " a newton",
            json);
     }
-    return !isDoubtful(found.registration);
+    return !isUnreliable(found.registration);
   }
 
   void fitAndLay() {
@@ -241,24 +263,22 @@ class Runner {
     const Json said = parseJson(readFile(registration), registration.string());
     if (const Json* certain = said.find("certain"); certain && !certain->asBool())
       report_.warnings.push_back(registration.string() +
-                                 ": its place is not certain, and the texture is laid there");
+                                 ": its pose is uncertain, but the texture is mapped there");
+    ScanPlace place{placed.mesh_from_scan, placed.compliance, {}};
+    for (const PathSample& sample : readPath(one.folder / "registered.csv"))
+      place.points.push_back({sample.t, sample.position});
     ScannedTexture texture;
     try {
-      texture.heights = heightsOverMesh(*target_, *one.filtered, one.files.poses, *one.files.rig,
-                                        placed.mesh_from_scan, placed.compliance)
-                            .heights;
-      texture.fitted = fitTexture(profileOf(texture.heights), scanFitOptions());
+      texture = fitScanTexture(*target_, *one.filtered, one.files.poses, *one.files.rig, place);
     } catch (const FileError&) {
       throw;
     } catch (const Error& error) {
       throw FileError(one.folder.string(), 0, error.what());
     }
     FourierTexture& fitted = texture.fitted.texture;
-    if (placed.compliance && *placed.compliance > 0) fitted.compliance = placed.compliance;
     fitted.name = one.files.scan.name;
     writeHeights(one.folder / "heights.csv", texture.heights);
     writeTexture(one.folder / "texture.json", fitted);
-    texture.strokes = readStrokes(one.folder / "registered.csv", one.folder / "heights.csv");
     note(ScanStep::texture, one.folder, begin,
          formatLength(texture.fitted.rms) + " rms along " + formatLength(texture.fitted.length),
          Json::object()
@@ -273,7 +293,7 @@ class Runner {
   RunScanReport report_;
   std::vector<Run> runs_;
   TriangleMesh in_file_, mesh_; // the latter in metres
-  double scale_ = 1;
+  double scale_ = 1, tip_radius_ = 0;
   std::optional<SurfaceTarget> target_;
 };
 

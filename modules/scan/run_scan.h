@@ -1,6 +1,6 @@
-// Scan folders taken to a workspace whose mesh has their textures on it, step by step: what
-// `patina scan` and the button of the desk Scan run. Each step leaves in a folder the files that
-// its command leaves, and what it found in the folder's scan.json.
+// Runs the steps from scan folders to a workspace with a textured mesh, for `patina scan` and the
+// button of the Scan page. Each step writes the files of its own command, and its result to the
+// folder's scan.json.
 #pragma once
 
 #include <filesystem>
@@ -14,42 +14,42 @@
 
 namespace patina {
 
-// In their order: frames become poses.tum; poses and the probe path.csv; paths registered.csv and
-// registration.json; heights heights.csv and texture.json, and these the workspace and
-// textured.obj, which is in the first folder.
+// In order: frames give poses.tum; poses and probe give path.csv; paths give registered.csv and
+// registration.json; heights give heights.csv and texture.json, and then the workspace and
+// textured.obj in the first folder.
 enum class ScanStep { track, filter, register_paths, texture };
 const std::vector<std::string>& scanStepNames(); // "track", "filter", "register", "texture"
 
 struct RunScanOptions {
-  std::vector<std::filesystem::path> folders; // one at least; each gives a texture
-  std::vector<std::filesystem::path> also;    // that only help to find the place
+  std::vector<std::filesystem::path> folders; // at least one; each gives a texture
+  std::vector<std::filesystem::path> also;    // used for the registration only
   std::filesystem::path mesh;
   MeshUnit unit = MeshUnit::mm;
-  std::filesystem::path workspace; // to be made; empty where `to` comes before the last step
-  // Steps before it are not run. Absent: the first that a folder lacks the files of; paths are
-  // registered again where mesh, unit or paths are others than those that were, or where the place
-  // was not certain.
+  std::filesystem::path workspace; // new workspace; empty if `to` is before the last step
+  // First step to run. Absent: the first whose files are missing in a folder. Paths are registered
+  // again if mesh, unit or paths have changed or the pose was uncertain.
   std::optional<ScanStep> from;
   ScanStep to = ScanStep::texture;
-  ScanRegistrationOptions registration;
+  std::optional<double> tip_radius;     // radius of the probe's tip [m]; absent: that of the rigs
+  ScanRegistrationOptions registration; // the scans' names are set
 };
 
 struct RunScanReport {
   struct Step {
     ScanStep step = ScanStep::track;
     std::filesystem::path folder;
-    std::string found; // in words
+    std::string found; // result as text
     double seconds = 0;
   };
-  std::vector<Step> steps; // that ran
+  std::vector<Step> steps; // steps that ran
   std::vector<std::string> warnings;
-  std::optional<RegisteredScans> registered; // where that step ran
-  // Whether all were run: without a place that is certain nothing is laid onto the mesh.
+  std::optional<RegisteredScans> registered; // if that step ran
+  // All steps ran. An uncertain pose stops before the texture is mapped.
   bool done = false;
 };
 
-// Throws Error where a folder is named twice or the workspace is there, Error and FileError as the
-// steps do, Cancelled. What the steps before have made stays.
+// Throws Error if a folder occurs twice or the workspace exists, Error and FileError as the steps
+// do, Cancelled. Files of finished steps stay.
 RunScanReport runScan(const RunScanOptions& options, Progress& progress);
 
 } // namespace patina

@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/json.h"
 #include "core/line_buffer.h"
+#include "core/output_target.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/pose_file.h"
 #include "geometry/mesh/mesh_unit.h"
@@ -16,7 +17,7 @@
 namespace patina {
 namespace {
 
-// Where the mesh is that was scanned, of a scan that was simulated.
+// Reads the true pose of the mesh in a simulated scan.
 void readTruth(const std::string& text, const std::string& name, ScanFiles& files) try {
   const Json truth = parseJson(text, name);
   if (truth.find("mesh_from_camera")) files.mesh_from_camera = poseIn(truth, "mesh_from_camera");
@@ -31,7 +32,7 @@ void readTruth(const std::string& text, const std::string& name, ScanFiles& file
   throw FileError(name, 0, error.what());
 }
 
-// A recording that has seen no marker yet, or heard no probe, has tables without a row.
+// A recording without a marker or without a probe has tables without rows.
 bool hasRows(const std::string& text, int header_lines) {
   LineBuffer file;
   file.append(text);
@@ -41,7 +42,7 @@ bool hasRows(const std::string& text, int header_lines) {
   return lines > header_lines;
 }
 
-// `where` is how errors name what the files are in.
+// `where` names the source in errors.
 void parseTexts(const std::string& where, ScanFiles& files, Progress& progress) {
   const auto withFile = [&](const char* name, double fraction, const auto& parse) {
     progress.throwIfCancelled();
@@ -65,7 +66,7 @@ void parseTexts(const std::string& where, ScanFiles& files, Progress& progress) 
   });
   withFile("probe.csv", 0.4, [&](const std::string& text, const std::string& name) {
     if (!hasRows(text, 1)) return;
-    files.probe = parseProbeStream(text, name, &files.warnings).values;
+    files.probe = parseProbeStream(text, name, &files.warnings, &files.rates).values;
     if (files.rig)
       for (ProbeSample& sample : files.probe) sample.force = forceOf(*files.rig, sample.force);
   });
@@ -76,7 +77,7 @@ void parseTexts(const std::string& where, ScanFiles& files, Progress& progress) 
 } // namespace
 
 bool isScanFolder(const std::filesystem::path& path) {
-  std::error_code none; // what cannot be looked at is no scan
+  std::error_code none; // an unreadable folder is not a scan
   if (!std::filesystem::is_directory(path, none) || isWorkspace(path)) return false;
   const auto has = [&](const char* name) { return std::filesystem::exists(path / name, none); };
   return has("frames.csv") || has("frames") || has("poses.tum") || has("path.csv");
@@ -84,7 +85,7 @@ bool isScanFolder(const std::filesystem::path& path) {
 
 ScanFiles readScanFolder(const std::filesystem::path& folder, Progress& progress) {
   ScanFiles files;
-  files.scan = scanIn(folder, scanNameOf(folder));
+  files.scan = readScanFiles(folder, scanNameOf(folder));
   files.folder = folder;
   if (std::filesystem::exists(folder / "frames.csv") || std::filesystem::exists(folder / "frames"))
     files.frames = framesOf(folder, 0);
@@ -106,6 +107,23 @@ ScanFiles readScan(const SceneScan& scan, Progress& progress) {
   }
   parseTexts("scan '" + scan.name + "': ", files, progress);
   return files;
+}
+
+double tipRadiusOf(const std::vector<std::filesystem::path>& folders) {
+  std::optional<double> radius;
+  std::filesystem::path first;
+  for (const std::filesystem::path& folder : folders) {
+    const std::filesystem::path file = folder / "rig.json";
+    if (!pathExists(file)) continue;
+    const double own = readRig(file).tip_radius;
+    if (radius && own != *radius)
+      throw FileError(file.string(), 0,
+                      "has another 'tip_radius' than " + first.string() +
+                          ": name one for all, --tip-radius");
+    radius = own;
+    first = file;
+  }
+  return radius.value_or(0);
 }
 
 } // namespace patina

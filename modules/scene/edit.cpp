@@ -29,7 +29,7 @@ std::string describeStroke(const Stroke& stroke) {
 }
 
 std::string describeValues(const ValueEdit& edit) {
-  if (edit.values.empty()) return "no change"; // of keys that there were once
+  if (edit.values.empty()) return "no change"; // its keys no longer exist
   std::string text;
   for (const auto& [key, value] : edit.values)
     text += (text.empty() ? "" : ", ") + (key + " = " + value);

@@ -1,4 +1,4 @@
-// What a person did to a scene: the records of the history and of a workspace's journal.
+// Edits of a scene: the records of the history and of a workspace's journal.
 #pragma once
 
 #include <memory>
@@ -12,14 +12,14 @@
 
 namespace patina {
 
-// setValues() of scene.h.
+// Applies setValues() of scene.h.
 struct ValueEdit {
   std::vector<std::pair<std::string, std::string>> values;
   bool operator==(const ValueEdit&) const = default;
 };
 
-// Anything else (objects added, moved, removed; an image laid on; everything wiped): the scene
-// afterwards, which is kept whole since it cannot be made again from its record.
+// Any other edit (objects added, moved or removed; an image applied; everything erased). Keeps the
+// whole resulting scene, which cannot be computed from a short record.
 struct SceneEdit {
   std::string what; // "add pot", for the history's list
   std::shared_ptr<const Scene> scene;
@@ -27,7 +27,7 @@ struct SceneEdit {
 
 using Edit = std::variant<Stroke, ValueEdit, SceneEdit>;
 
-// "relief stroke, 0.3 mm", "stiffness = 800", "add pot".
+// Returns a text like "relief stroke, 0.3 mm", "stiffness = 800" or "add pot".
 std::string describe(const Edit& edit);
 
 } // namespace patina

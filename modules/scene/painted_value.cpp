@@ -8,7 +8,7 @@ namespace {
 bool nearPaint(const MaterialMap& map, const Vec3& p) {
   const Vec3 q = (p - map.origin()) / map.voxel();
   if (!q.allFinite() || q.cwiseAbs().maxCoeff() > 1e9) return false;
-  // The cell's nodes lie in two blocks along each axis at most.
+  // The cell's nodes lie in at most two blocks along each axis.
   for (int corner = 0; corner < 8; ++corner) {
     MaterialMap::Index block{};
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -35,7 +35,7 @@ PaintedValue paintedValue(const Scene& scene, MaterialChannel channel, const Vec
     if (!nearPaint(map, p)) continue;
     const MaterialMap::Paint paint = map.paintAt(p, channel);
     const double own = valueOf(base, channel);
-    // What was added covers nothing: its share of the sum stands for that.
+    // Added paint has no weight of its own; its part of the sum is used instead.
     const double size = std::abs(paint.value);
     const double weight = paint.weight == 0 && size > 0 ? size / (size + own) : paint.weight;
     if (weight > best.weight) best = {weight, valueOf(map.at(p, base), channel)};

@@ -6,11 +6,11 @@
 namespace patina {
 
 struct PaintedValue {
-  double weight = 0; // how much of it is paint, or was added; 0 where nothing is painted
-  double felt = 0;   // SI: paint over the scene's own value
+  double weight = 0; // weight of paint or of its added part; 0 where unpainted
+  double value = 0;  // SI, paint composited over the scene's own value
 };
 
-// Trilinear. Where several objects are painted, that of the greatest weight.
+// Interpolates trilinearly. Of several painted objects, the one with the largest weight counts.
 PaintedValue paintedValue(const Scene& scene, MaterialChannel channel, const Vec3& world);
 
 } // namespace patina

@@ -8,7 +8,7 @@
 namespace patina {
 namespace {
 
-// Neighbouring texels farther apart than this many of their own steps are two places.
+// Neighbouring texels that are more of their own steps apart show different places of the surface.
 constexpr double kSamePlace = 3;
 
 constexpr double kOnEdge = 1e-9; // barycentric
@@ -23,7 +23,7 @@ ReliefSlope::Face ReliefSlope::faceOf(std::int32_t index) const {
   face.index = index;
   const auto f = static_cast<std::size_t>(index);
   const Vec2 texels(texels_->width, texels_->height);
-  std::array<Vec2, 3> at; // in texels, centres at whole numbers
+  std::array<Vec2, 3> at; // [texels], with centres at integers
   for (std::size_t k = 0; k < 3; ++k)
     at[k] = (*uvs_)[f][k].cwiseProduct(texels) - Vec2::Constant(0.5);
   Eigen::Matrix2d sides;
@@ -68,7 +68,7 @@ Vec3 ReliefSlope::point(const Place& place) const {
 ReliefSlope::Slope ReliefSlope::inside(const TiledImage& g, int i, int j, const Place& place,
                                        const Face& face) const {
   const double value = static_cast<double>(g.at(i, j, 0));
-  Vec2 slope = Vec2::Zero(); // a texel
+  Vec2 slope = Vec2::Zero(); // per texel
   bool whole = true;
   Face other;
   for (int axis = 0; axis < 2; ++axis) {
@@ -125,7 +125,7 @@ Vec3 ReliefSlope::at(const TiledImage& g, int i, int j) const {
 std::array<unsigned char, 3> encodedSlope(const Vec3& slope) {
   std::array<unsigned char, 3> bytes{};
   for (int axis = 0; axis < 3; ++axis) {
-    const double share = std::min(1.0, std::abs(slope[axis]) / kSteepest);
+    const double share = std::min(1.0, std::abs(slope[axis]) / kMaxEncodedSlope);
     bytes[static_cast<std::size_t>(axis)] = static_cast<unsigned char>(
         std::lround(128 + 127 * std::copysign(std::sqrt(share), slope[axis])));
   }

@@ -1,4 +1,4 @@
-// How steep painted relief is at a texel, for its shading.
+// Slope of painted relief at a texel, for shading.
 #pragma once
 
 #include <array>
@@ -10,26 +10,25 @@
 
 namespace patina {
 
-// Refers to what it is made of, which must outlive it. One thread; quick along the texels of a
-// face.
+// View of its sources, which must outlive it. One thread; fast along the texels of a face.
 class ReliefSlope {
  public:
   ReliefSlope(const TriangleMesh& mesh, const CornerUvs& uvs, const TexelMap& texels);
 
-  // Gradient of g along the surface at texel (i, j) [1/m], in the mesh's frame and tangent to the
-  // texel's face: central differences, one-sided where a neighbour shows another place of the
-  // surface or repeats the chart's edge, so that no seam is seen. Second order in the texel inside
-  // a chart, first at its edge. Zero where the texel shows nothing.
+  // Returns the gradient of the relief value along the surface at texel (i, j) [1/m], in the mesh's
+  // frame and tangent to the texel's face. Central differences, one-sided if a neighbour shows
+  // another place of the surface or repeats the chart's edge, so that no seam is visible. Second
+  // order in the texel inside a chart, first at its edge. Zero for an unused texel.
   Vec3 at(const TiledImage& g, int i, int j) const;
 
  private:
-  // What all texels of a face share; made anew only where the face changes along the way.
+  // Values common to all texels of a face, computed again when the face changes.
   struct Face {
     std::int32_t index = -1;
     bool flat = false;                       // without area, in space or in the image
     Vec3 first, along_u, along_v;            // barycentric of texel (i, j): first + i u + j v
-    Eigen::Matrix<double, 3, 2> gradient_of; // differences a texel along i and j -> gradient
-    double step_u = 0, step_v = 0;           // of a texel on the surface [m]
+    Eigen::Matrix<double, 3, 2> gradient_of; // from differences per texel along i and j
+    double step_u = 0, step_v = 0;           // texel size on the surface [m]
   };
   struct Place {
     std::int32_t face = -1;
@@ -38,7 +37,7 @@ class ReliefSlope {
   };
   struct Slope {
     Vec3 gradient = Vec3::Zero();
-    bool whole = false; // along both axes of the image
+    bool whole = false; // valid along both axes of the image
   };
   Face faceOf(std::int32_t index) const;
   Place placeOf(int i, int j, Face& known) const;
@@ -48,15 +47,15 @@ class ReliefSlope {
   const TriangleMesh* mesh_;
   const CornerUvs* uvs_;
   const TexelMap* texels_;
-  mutable Face last_; // one thread
+  mutable Face last_; // last face, for one thread
 };
 
-// Whose texels matter to the slope at one: so far away along either axis, at most.
+// Largest distance along either axis of texels that affect the slope.
 inline constexpr int kSlopeReach = kGutter + 2;
 
-// Three bytes a texel, finer near zero; slopes beyond 2 count as 2. The shader's other half is
-// kSlopeShader in image_surface.cpp.
-inline constexpr double kSteepest = 2;
+// Three bytes per texel, finer near zero; slopes beyond 2 count as 2. kSlopeShader in
+// image_surface.cpp decodes them.
+inline constexpr double kMaxEncodedSlope = 2;
 std::array<unsigned char, 3> encodedSlope(const Vec3& slope);
 
 } // namespace patina

@@ -13,20 +13,20 @@
 namespace patina {
 namespace {
 
-constexpr double kMostReliefHeight = 0.1; // [m]
-constexpr double kFarthest = 1e6;         // [m], where doubles still tell a nanometre
+constexpr double kMaxReliefHeight = 0.1; // [m]
+constexpr double kMaxDistance = 1e6;     // [m], up to which doubles resolve a nanometre
 
 void require(bool holds, const std::string& key, double value, const std::string& range) {
   if (!holds) throw Error(key + " = " + formatNumber(value) + ": it must be " + range);
 }
 
-// " N/m"; empty for a ratio.
+// Returns a suffix like " N/m", or an empty text for a ratio.
 std::string unitAfter(const std::string& key) {
   const std::string unit(sceneKey(key).unit);
   return unit.empty() ? "" : " " + unit;
 }
 
-// NaN fails every comparison, so it is refused here without a test of its own.
+// NaN fails every comparison and is therefore rejected.
 void requireBetween(const std::string& key, double value, double low, double high) {
   require(value >= low && value <= high, key, value,
           "between " + formatNumber(low) + " and " + formatNumber(high) + unitAfter(key));
@@ -113,12 +113,12 @@ void validate(const std::vector<SceneObject>& objects) {
         object.world_from_object.matrix().allFinite() &&
         (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-6 &&
         rotation.determinant() > 0;
-    // A scaled pose would scale distances and with them the force.
+    // A scaled pose would scale distances and thus the force.
     if (!rigid) throw Error("object '" + object.name + "': its pose is not a rigid transform");
     const double away = object.world_from_object.translation().cwiseAbs().maxCoeff();
-    if (!(away <= kFarthest))
+    if (!(away <= kMaxDistance))
       throw Error("object '" + object.name + "': its pose puts it " + formatNumber(away) +
-                  " m away; the farthest is " + formatNumber(kFarthest) + " m");
+                  " m away; the farthest is " + formatNumber(kMaxDistance) + " m");
   }
 }
 
@@ -162,11 +162,11 @@ void validate(const Scene& scene) {
   validate(scene.haptics);
   if (haveTwoSides(scene.field.sides) &&
       !(scene.haptics.tip_radius.value_or(0) > 0 || scene.haptics.offset.value_or(0) > 0))
-    throw Error("surface.sides = two: both sides of a sheet are felt only by what has a size; set "
-                "tip.radius or offset above 0, too");
+    throw Error("surface.sides = two: feeling both sides of a sheet needs a tip with a size; also "
+                "set tip.radius or offset above 0");
   if (scene.device_model) validate(*scene.device_model);
-  requireBetween("relief.height", scene.relief.height, -kMostReliefHeight, kMostReliefHeight);
-  requireBetween("relief.smoothing", scene.relief.smoothing, 0, kMostReliefHeight);
+  requireBetween("relief.height", scene.relief.height, -kMaxReliefHeight, kMaxReliefHeight);
+  requireBetween("relief.smoothing", scene.relief.smoothing, 0, kMaxReliefHeight);
   const int size = scene.paint_size;
   require(size >= 64 && size <= 4096 && (size & (size - 1)) == 0, "paint.size", size,
           "64, 128, 256, 512, 1024, 2048 or 4096 texels");

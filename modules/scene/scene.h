@@ -1,4 +1,4 @@
-// Everything a person authored or recorded, as plain values. An absent feature is an absent value.
+// The scene: all authored and recorded data as plain values. An absent feature is an absent value.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,12 @@
 #include "field/sampling/field_sampler.h"
 #include "field/store/field_grid.h"
 #include "geometry/mesh/triangle_mesh.h"
+#include "scene/color_scale.h"
 #include "scene/device_model.h"
 #include "scene/haptic_properties.h"
 #include "scene/paint/object_paint.h"
 #include "scene/paint/relief_settings.h"
+#include "scene/pin.h"
 #include "scene/scene_scan.h"
 
 namespace patina {
@@ -23,46 +25,48 @@ struct SceneObject {
   std::string name;                         // unique in the scene; letters, digits, '-', '_'
   std::shared_ptr<const TriangleMesh> mesh; // [m], object frame
   Pose world_from_object = Pose::Identity();
-  std::shared_ptr<const ObjectPaint> paint{}; // absent until the first stroke
+  std::shared_ptr<const ObjectPaint> paint{}; // null before the first stroke
 };
 
 struct Scene {
   std::vector<SceneObject> objects;
-  std::vector<SceneScan> scans; // nothing of them is felt
+  std::vector<SceneScan> scans; // without haptic effect
   FieldSpec field;
-  // Several objects are one field by min (K14): right outside and, where they overlap, too shallow
-  // inside (F9). true = distances inside are those to the union's own surface.
+  // Several objects form one field by the minimum (K14): exact outside, and too shallow inside
+  // overlaps (F9). true = inside distances are measured from the union's surface.
   bool redistance = false;
   Sampler sampler = Sampler::high;
   HapticProperties haptics;
-  ReliefSettings relief;                             // of painted relief, where there is any
-  ForceForm material_form = ForceForm::conservative; // of painted stiffness (F6)
-  int paint_size = 512;                              // texels a side of images that painting makes
-  std::string device = "mouse";            // named in the catalogue of devices; who opens it judges
-  std::optional<DeviceModel> device_model; // absent: nothing is known that could be unstable
+  ReliefSettings relief;                             // for painted relief
+  ForceForm material_form = ForceForm::conservative; // for painted stiffness (F6)
+  int paint_size = 512;                              // texels a side of images created by painting
+  std::string device = "mouse"; // name in the catalogue of devices; checked when it is opened
+  std::optional<DeviceModel> device_model; // absent: unknown, so no stability limit
   std::optional<Stabilisers> stabilisers;  // absent: chosen from device_model (auto)
+  std::vector<Pin> pins;                   // without haptic effect
+  ColorScales colors;                      // colours of pictures
 };
 
-// Whether an object or a scan may be called so.
+// Returns true if the text is a valid name of an object or a scan.
 bool isName(const std::string& name);
 
-// What is felt where nothing is painted.
+// Returns the values for unpainted points.
 Material baseMaterial(const HapticProperties& haptics);
-// Of all objects' images, height included [m]; 0 without relief. Looks at every texel.
+// Returns the largest |relief height| of all images [m]; 0 without relief. Reads every texel.
 double highestRelief(const Scene& scene);
 
-// Throws Error in one line, naming the key and the allowed range, if a value makes no sense.
+// Throws Error in one line, naming the key and the allowed range, for an invalid value.
 void validate(const Scene& scene);
 
-// "friction.static", "0.5" and so on; the keys of docs/file_formats.md; "none" makes one absent.
-// Throws Error for an unknown key (listing those known) or a bad value; the scene is then
-// unchanged. Lengths take a unit ("0.5mm"). Of resolution and voxel the last one set holds. A first
-// friction coefficient is both, so that the two may be set in either order; "none" for either
-// takes friction away.
+// Sets a value by its key of docs/file_formats.md, such as "friction.static" to "0.5"; "none"
+// removes an optional value. Throws Error for an unknown key (listing the known ones) or an invalid
+// value and leaves the scene unchanged. Lengths accept a unit ("0.5mm"). The later of resolution
+// and voxel applies. The first friction coefficient sets both, so that the order does not matter;
+// "none" for either removes friction.
 void setValue(Scene& scene, const std::string& key, const std::string& value);
-// Several at once, judged together at the end, so that their order does not matter.
+// Sets several values and validates at the end, so that their order does not matter.
 void setValues(Scene& scene, const std::vector<std::pair<std::string, std::string>>& list);
-// Keys and present values, in the order of the documentation.
+// Returns keys and present values, in the order of the documentation.
 std::vector<std::pair<std::string, std::string>> values(const Scene& scene);
 
 } // namespace patina

@@ -49,14 +49,14 @@ Scene withoutScan(Scene scene, std::string_view name) {
   return scene;
 }
 
-SceneScan renewed(const SceneScan& known, SceneScan found) {
+SceneScan mergedScan(const SceneScan& known, SceneScan found) {
   const auto differs = [&](std::string_view file) {
     const std::string *old = known.text(std::string(file)), *now = found.text(std::string(file));
     return bool(old) != bool(now) || (old && *old != *now);
   };
   bool recording = known.frames == found.frames, all = recording, where = true;
   for (const auto& [file, step] : kScanFiles) {
-    // Neither of camera and rig follows from the other.
+    // Camera and rig do not depend on each other.
     const bool follows = step == "calibrate" ? recording : step == "register" ? where : all;
     if (step != "record" && follows && !found.text(std::string(file)))
       if (const auto old = known.files.find(std::string(file)); old != known.files.end())
@@ -69,7 +69,7 @@ SceneScan renewed(const SceneScan& known, SceneScan found) {
   return found;
 }
 
-std::string filesLost(const SceneScan& before, const SceneScan& after) {
+std::string invalidatedFiles(const SceneScan& before, const SceneScan& after) {
   std::string names;
   for (const auto& [file, step] : kScanFiles)
     if (before.text(std::string(file)) && !after.text(std::string(file)))
@@ -77,7 +77,7 @@ std::string filesLost(const SceneScan& before, const SceneScan& after) {
   return names;
 }
 
-std::string wordsFor(const SceneScan* before, const SceneScan& after) {
+std::string describeChange(const SceneScan* before, const SceneScan& after) {
   if (!before) return "attach scan " + after.name;
   if (*before == after) return "";
   std::vector<std::string> steps;

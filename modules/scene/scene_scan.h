@@ -1,5 +1,5 @@
-// A scan that belongs to a scene: the files of its folder, whole, and where its frames stay. What
-// the files mean is known to acquisition alone; who builds without it still keeps them.
+// A scan in a scene: the contents of its files, which only acquisition interprets, and the folder
+// of its frames.
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@ namespace patina {
 struct Scene;
 
 struct SceneScan {
-  std::string name;                                                // as that of an object
-  std::map<std::string, std::shared_ptr<const std::string>> files; // by kScanFiles, texts
-  std::filesystem::path folder; // absolute, where its frames are; empty: it has none
-  std::string frames;           // which those are: framesDigest() of session/store/attach_scan.h
+  std::string name;                                                // rules as for an object's name
+  std::map<std::string, std::shared_ptr<const std::string>> files; // texts by name of kScanFiles
+  std::filesystem::path folder; // absolute folder of the frames; empty: none
+  std::string frames; // identifies the frames: framesDigest() of session/store/attach_scan.h
 
-  const std::string* text(const std::string& file) const; // nullptr: it has none
-  bool operator==(const SceneScan& other) const;          // files by what they hold
+  const std::string* text(const std::string& file) const; // nullptr if absent
+  bool operator==(const SceneScan& other) const;          // compares the files' contents
 };
 
-// The files that go with a scan, and the step that makes each.
+// Files of a scan and the step that makes each.
 struct ScanFile {
   std::string_view name, step;
 };
@@ -39,23 +39,23 @@ inline constexpr std::array<ScanFile, 10> kScanFiles = {{{"frames.csv", "record"
                                                          {"registered.csv", "register"},
                                                          {"registered.txt", "register"}}};
 
-const SceneScan* findScan(const Scene& scene, std::string_view name); // nullptr: there is none
-// In the place of one of its name. Throws Error if it makes no sense.
+const SceneScan* findScan(const Scene& scene, std::string_view name); // nullptr if absent
+// Adds a scan or replaces the one of its name. Throws Error if it is invalid.
 Scene withScan(Scene scene, SceneScan scan);
-// Throws Error naming those that there are.
+// Throws Error naming the existing scans if it is unknown.
 Scene withoutScan(Scene scene, std::string_view name);
-// `found` with what it lacks and `known`, which has its name, still has to give: nothing of another
-// recording (frames, frames.csv, probe.csv or truth.json differ, or one has what the other lacks),
-// and no file of a step before which something differs. Where a path lies follows from that alone.
-SceneScan renewed(const SceneScan& known, SceneScan found);
-// "path.csv, heights.csv": those of `before` that `after` lacks; empty: none.
-std::string filesLost(const SceneScan& before, const SceneScan& after);
-// "attach scan plate", "track and filter scan plate", for the history; empty: nothing has changed.
-std::string wordsFor(const SceneScan* before, const SceneScan& after);
-// The folder's name with '-' for what no name may hold.
+// Returns `found` completed by those files of `known`, a scan of the same name, that are still
+// valid. Takes nothing if the recordings differ (in frames, frames.csv, probe.csv or truth.json),
+// and no file that depends on one that differs. The registration depends on the path only.
+SceneScan mergedScan(const SceneScan& known, SceneScan found);
+// Returns the files of `before` that `after` lacks, as "path.csv, heights.csv".
+std::string invalidatedFiles(const SceneScan& before, const SceneScan& after);
+// Returns a text for the history, such as "attach scan plate"; empty if equal.
+std::string describeChange(const SceneScan* before, const SceneScan& after);
+// Returns the folder's name with '-' for characters that a name may not have.
 std::string scanNameOf(const std::filesystem::path& folder);
 
-// Throws Error: a name, a file or a pair of them that cannot be.
+// Throws Error for an invalid name, file or combination.
 void validate(const std::vector<SceneScan>& scans);
 
 } // namespace patina

@@ -1,4 +1,4 @@
-// Scene values as text: one table serves setting, listing and the message for an unknown key.
+// Scene values as text: one table for setting, listing and the error for an unknown key.
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -85,8 +85,8 @@ constexpr Named<OpenSides> kSides[] = {{OpenSides::automatic, "auto"},
                                        {OpenSides::automatic_two, "auto-two"}};
 constexpr Named<ReliefMode> kModes[] = {{ReliefMode::pulled, "pulled"},
                                         {ReliefMode::baked, "baked"}};
-constexpr Named<ReliefFrom> kSources[] = {{ReliefFrom::painted, "painted"},
-                                          {ReliefFrom::color, "color"}};
+constexpr Named<ReliefSource> kSources[] = {{ReliefSource::painted, "painted"},
+                                            {ReliefSource::color, "color"}};
 constexpr Named<ForceForm> kForms[] = {{ForceForm::conservative, "conservative"},
                                        {ForceForm::literal, "literal"}};
 constexpr Named<std::optional<Stabilisers>> kStabilisers[] = {
@@ -98,8 +98,8 @@ constexpr Named<std::optional<Stabilisers>> kStabilisers[] = {
 
 template <typename Table>
 auto chosen(const std::string& key, const std::string& text, const Table& table) {
-  if (const auto found = valueIn(table, text)) return *found;
-  throw Error(key + " = '" + text + "': it must be " + textsOf(table, " or "));
+  if (const auto found = parseIn(table, text)) return *found;
+  throw Error(key + " = '" + text + "': it must be " + allNames(table, " or "));
 }
 
 struct Entry : SceneKey {
@@ -107,19 +107,19 @@ struct Entry : SceneKey {
   std::function<Text(const Scene&)> get;
 };
 
-// One word of a table; left out where it is that of a new scene.
+// Entry for one word of a table, omitted if it is the default.
 template <typename Table, typename Member>
 Entry choiceEntry(const char* key, const Table& table, const Member& member) {
-  const auto usual = member(Scene{});
-  return {{key, "", std::string(textIn(table, usual))},
+  const auto default_value = member(Scene{});
+  return {{key, "", std::string(nameIn(table, default_value))},
           [=, &table](Scene& s, const std::string& t) { member(s) = chosen(key, t, table); },
           [=, &table](const Scene& s) {
             const auto& value = member(s);
-            return value == usual ? Text() : Text(textIn(table, value));
+            return value == default_value ? Text() : Text(nameIn(table, value));
           }};
 }
 
-// A number that a scene always has.
+// Entry for a number that a scene always has.
 template <typename Member>
 Entry numberEntry(const char* key, std::string_view unit, const Member& member) {
   return {{key, unit, formatNumber(member(Scene{}))},
@@ -130,7 +130,7 @@ Entry numberEntry(const char* key, std::string_view unit, const Member& member) 
           [=](const Scene& s) { return Text(formatNumber(member(s))); }};
 }
 
-// A number of the haptic properties that may be absent.
+// Entry for an optional number of the haptic properties.
 Entry optionalEntry(const char* key, std::string_view unit,
                     std::optional<double> HapticProperties::*member,
                     double (*read)(const std::string&, const std::string&)) {
@@ -141,8 +141,7 @@ Entry optionalEntry(const char* key, std::string_view unit,
           [=](const Scene& s) { return text(s.haptics.*member); }};
 }
 
-// One coefficient given for friction that was absent is both, so that the order in which the two
-// are set does not matter and one alone is plain Coulomb friction.
+// Entry for a friction coefficient. The first one sets both, so that their order does not matter.
 Entry frictionEntry(const char* key, MaterialChannel channel, double Friction::*member) {
   return {{key, unit(channel), "none"},
           [=](Scene& s, const std::string& t) {
@@ -158,9 +157,10 @@ Entry frictionEntry(const char* key, MaterialChannel channel, double Friction::*
           }};
 }
 
-// A length of the relief, left out where it is that of a new scene.
-Entry reliefEntry(const char* key, const std::string& usual, double ReliefSettings::*member) {
-  return {{key, "m", usual},
+// Entry for a length of the relief, omitted if it is the default.
+Entry reliefEntry(const char* key, const std::string& default_value,
+                  double ReliefSettings::*member) {
+  return {{key, "m", default_value},
           [=](Scene& s, const std::string& t) {
             s.relief.*member = isNone(t) ? ReliefSettings{}.*member : lengthFor(key, t);
           },
@@ -169,7 +169,7 @@ Entry reliefEntry(const char* key, const std::string& usual, double ReliefSettin
           }};
 }
 
-// A number of the magnet; "none" takes the magnet away.
+// Entry for a number of the magnet; "none" removes the magnet.
 Entry magnetEntry(const char* key, std::string_view unit, double Magnet::*member,
                   double (*read)(const std::string&, const std::string&)) {
   return {{key, unit, "none"},
@@ -183,7 +183,7 @@ Entry magnetEntry(const char* key, std::string_view unit, double Magnet::*member
           }};
 }
 
-// A number of the device's model; "none" takes the model away.
+// Entry for a number of the device's model; "none" removes the model.
 Entry deviceEntry(const char* key, std::string_view unit, double DeviceModel::*member,
                   double (*read)(const std::string&, const std::string&)) {
   return {{key, unit, "none"},
@@ -197,8 +197,8 @@ Entry deviceEntry(const char* key, std::string_view unit, double DeviceModel::*m
           }};
 }
 
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> kEntries = {
+std::vector<Entry> hapticEntries() {
+  return {
       numberEntry(
           "stiffness", unit(MaterialChannel::stiffness),
           [](auto&& s) -> auto& { return s.haptics.stiffness; }),
@@ -230,7 +230,7 @@ const std::vector<Entry>& entries() {
          }
        },
        [](const Scene& s) {
-         return s.haptics.friction ? Text(textIn(kSlips, s.haptics.friction->slip)) : Text();
+         return s.haptics.friction ? Text(nameIn(kSlips, s.haptics.friction->slip)) : Text();
        }},
       optionalEntry("offset", "m", &HapticProperties::offset, lengthFor),
       magnetEntry("magnet.range", "m", &Magnet::range, lengthFor),
@@ -256,7 +256,7 @@ const std::vector<Entry>& entries() {
        [](Scene& s, const std::string& t) {
          if (isNone(t)) refuseNone("resolution");
          s.field.resolution = wholeFor("resolution", t, "cells");
-         s.field.voxel.reset(); // whichever of the two was set last holds
+         s.field.voxel.reset(); // the later of the two applies
        },
        [](const Scene& s) {
          return s.field.voxel ? Text() : Text(std::to_string(s.field.resolution));
@@ -284,11 +284,11 @@ const std::vector<Entry>& entries() {
           "relief.mode", kModes, [](auto&& s) -> auto& { return s.relief.mode; }),
       {{"relief.source", "", "none"},
        [](Scene& s, const std::string& t) {
-         s.relief.source = isNone(t) ? ReliefFrom::painted : chosen("relief.source", t, kSources);
+         s.relief.source = isNone(t) ? ReliefSource::painted : chosen("relief.source", t, kSources);
        },
        [](const Scene& s) {
-         return s.relief.source == ReliefFrom::painted ? Text()
-                                                       : Text(textIn(kSources, s.relief.source));
+         return s.relief.source == ReliefSource::painted ? Text()
+                                                         : Text(nameIn(kSources, s.relief.source));
        }},
       reliefEntry("relief.height", formatNumber(ReliefSettings{}.height), &ReliefSettings::height),
       choiceEntry(
@@ -323,6 +323,41 @@ const std::vector<Entry>& entries() {
        [](Scene& s, const std::string& t) { s.device = t; },
        [](const Scene& s) { return Text(s.device); }},
   };
+}
+
+// Entry for the colour scale of a drawn thing; the key must outlive it.
+Entry colorEntry(const std::string& key, const std::string& thing) {
+  return {{key, "", "none"},
+          [&key, thing](Scene& s, const std::string& t) {
+            try {
+              const ColorScale scale = parseColorScale(t);
+              s.colors.erase(thing);
+              if (scale != ColorScale{}) s.colors[thing] = scale;
+            } catch (const Error& error) {
+              throw Error(key + ": " + error.what());
+            }
+          },
+          [thing](const Scene& s) {
+            const std::string words = format(scaleOf(s.colors, thing));
+            return words.empty() ? Text() : Text(words);
+          }};
+}
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> kEntries = [] {
+    std::vector<Entry> all = hapticEntries();
+    static const std::vector<std::string> keys = [] {
+      std::vector<std::string> names;
+      for (const std::string& thing : coloredThings()) names.push_back("colors." + thing);
+      return names;
+    }();
+    all.push_back({{"pins", "", "none"},
+                   [](Scene& s, const std::string& t) { s.pins = parsePins(t); },
+                   [](const Scene& s) { return s.pins.empty() ? Text() : Text(format(s.pins)); }});
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      all.push_back(colorEntry(keys[i], coloredThings()[i]));
+    return all;
+  }();
   return kEntries;
 }
 
@@ -335,7 +370,7 @@ const SceneKey& sceneKey(std::string_view key) {
 }
 
 void setValues(Scene& scene, const std::vector<std::pair<std::string, std::string>>& list) {
-  Scene changed = scene; // meshes are shared, so this is cheap
+  Scene changed = scene; // cheap, since meshes are shared
   const auto assign = [&](const std::string& key, const std::string& value) {
     for (const Entry& entry : entries()) {
       if (key == entry.key) return entry.set(changed, value);
@@ -344,7 +379,8 @@ void setValues(Scene& scene, const std::vector<std::pair<std::string, std::strin
     for (const Entry& entry : entries()) known += " " + std::string(entry.key);
     throw Error("unknown key '" + key + "'; known are:" + known);
   };
-  // First, because a first coefficient is both: "dynamic 0, static 0.5" must not lose its zero.
+  // Assigned first, because the first coefficient sets both: "dynamic 0, static 0.5" must keep its
+  // zero.
   for (const auto& [key, value] : list)
     if (key == "friction.static") assign(key, value);
   for (const auto& [key, value] : list)

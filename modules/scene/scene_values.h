@@ -1,4 +1,4 @@
-// What is known of each key of a scene. The values themselves: setValue() and values() of scene.h.
+// Descriptions of the scene keys. See setValue() and values() of scene.h for their values.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@ namespace patina {
 
 struct SceneKey {
   std::string_view key;
-  std::string_view unit; // SI, or what is counted; "" = none
-  std::string usual;     // of a new scene: the word for what values() leaves out; "none" = absent
+  std::string_view unit;     // SI, or the counted thing; "" = none
+  std::string default_value; // value in a new scene, which values() omits; "none" = absent
 };
-const SceneKey& sceneKey(std::string_view key); // throws out_of_range if there is none
+const SceneKey& sceneKey(std::string_view key); // throws out_of_range for an unknown key
 
 } // namespace patina

@@ -11,14 +11,14 @@
 namespace patina {
 namespace {
 
-constexpr double kLongest = 1;       // [m]: no brush is larger than a scene may be felt
-constexpr double kMostFalloff = 1e6; // as good as a hard brush
-constexpr double kMostHeight = 0.1;  // [m] of relief
+constexpr double kMaxRadius = 1;    // [m], largest brush
+constexpr double kMaxFalloff = 1e6; // acts like a hard brush
+constexpr double kMaxHeight = 0.1;  // [m], of relief
 
 template <typename Table>
 auto chosen(const char* key, const std::string& text, const Table& table) {
-  if (const auto found = valueIn(table, text)) return *found;
-  throw Error(std::string(key) + " '" + text + "': it must be one of " + textsOf(table));
+  if (const auto found = parseIn(table, text)) return *found;
+  throw Error(std::string(key) + " '" + text + "': it must be one of " + allNames(table));
 }
 
 constexpr auto kToolNames = [] {
@@ -34,7 +34,8 @@ constexpr Named<StrokeMode> kModeNames[] = {{StrokeMode::max, "max"},
                                             {StrokeMode::build_up, "build-up"},
                                             {StrokeMode::add, "add"},
                                             {StrokeMode::smooth, "smooth"}};
-constexpr Named<Seed> kSeedNames[] = {{Seed::nearest, "nearest"}, {Seed::segment, "segment"}};
+constexpr Named<DabAnchor> kDabAnchorNames[] = {{DabAnchor::nearest, "nearest"},
+                                                {DabAnchor::segment, "segment"}};
 constexpr Named<Symmetry> kSymmetryNames[] = {
     {Symmetry::none, "none"}, {Symmetry::x, "x"}, {Symmetry::y, "y"}, {Symmetry::z, "z"}};
 
@@ -47,11 +48,11 @@ void requireBetween(const char* key, double value, double low, double high) {
           "between " + formatNumber(low) + " and " + formatNumber(high));
 }
 
-// Stiffness is not 0: a contact without any is none.
+// Excludes a stiffness of 0, which would be no contact.
 MaterialRange valueRange(Tool tool, StrokeMode mode) {
-  if (tool == Tool::relief) return {-kMostHeight, kMostHeight};
+  if (tool == Tool::relief) return {-kMaxHeight, kMaxHeight};
   MaterialRange range = rangeOf(*channelOf(tool));
-  if (mode == StrokeMode::add) range.least = -range.most;
+  if (mode == StrokeMode::add) range.min = -range.max;
   return range;
 }
 
@@ -61,7 +62,7 @@ void validateLayer(const BrushLayer& layer, StrokeMode mode) {
     if (mode == StrokeMode::add) throw Error("mode add: colours cannot be added");
   } else if (layer.tool != Tool::erase) {
     const MaterialRange range = valueRange(layer.tool, mode);
-    requireBetween("value", layer.value, range.least, range.most);
+    requireBetween("value", layer.value, range.min, range.max);
   }
 }
 
@@ -72,7 +73,7 @@ void validateLayers(const Brush& brush) {
     if (layers.size() > 1 && layer->tool == Tool::erase)
       throw Error("layers: erase must be the only one");
     if (std::any_of(layers.begin(), layer, [&](const auto& l) { return l.tool == layer->tool; }))
-      throw Error("layers: " + std::string(name(layer->tool)) + " is there twice");
+      throw Error("layers: " + std::string(name(layer->tool)) + " is used twice");
   }
 }
 
@@ -132,7 +133,7 @@ void setValue(BrushLayer& layer, const Json& value) {
   }
 }
 
-// The keys of a layer; what stands beside them is not looked at.
+// Reads the keys of a layer and ignores others.
 BrushLayer layerFrom(const Json& json, bool needs_value) {
   BrushLayer layer;
   layer.tool = chosen("tool", json.at("tool").asString(), kToolNames);
@@ -165,7 +166,7 @@ void setLayers(Brush& brush, const Json& json) {
     return;
   }
   if (json.find("tool") || json.find("value"))
-    throw Error("'layers' must not stand beside 'tool' and 'value'");
+    throw Error("'layers' cannot be combined with 'tool' and 'value'");
   std::vector<BrushLayer> layers;
   for (const Json& item : several->asArray()) {
     try {
@@ -178,7 +179,7 @@ void setLayers(Brush& brush, const Json& json) {
   }
   if (layers.empty()) throw Error("'layers' must hold one layer or more");
   static_cast<BrushLayer&>(brush) = layers.front();
-  brush.also.assign(layers.begin() + 1, layers.end());
+  brush.extra_layers.assign(layers.begin() + 1, layers.end());
 }
 
 void setKey(Stroke& stroke, const std::string& key, const Json& value) {
@@ -188,9 +189,9 @@ void setKey(Stroke& stroke, const std::string& key, const Json& value) {
   else if (key == "radius_per_force")
     brush.radius_per_force = value.asNumber();
   else if (key == "least_radius")
-    brush.least_radius = value.asNumber();
+    brush.min_radius = value.asNumber();
   else if (key == "most_radius")
-    brush.most_radius = value.asNumber();
+    brush.max_radius = value.asNumber();
   else if (key == "falloff")
     brush.falloff = value.asNumber();
   else if (key == "shape")
@@ -200,7 +201,7 @@ void setKey(Stroke& stroke, const std::string& key, const Json& value) {
   else if (key == "front_only")
     brush.front_only = value.asBool();
   else if (key == "seed")
-    brush.seed = parseSeed(value.asString());
+    brush.anchor = parseDabAnchor(value.asString());
   else if (key == "symmetry")
     brush.symmetry = chosen("symmetry", value.asString(), kSymmetryNames);
   else if (key == "erases")
@@ -214,7 +215,7 @@ void setKey(Stroke& stroke, const std::string& key, const Json& value) {
 Stroke strokeOfKeys(const Json& json) {
   Stroke stroke;
   for (const auto& [key, value] : json.asObject()) {
-    if (key == "tool" || key == "value" || key == "layers") continue; // below
+    if (key == "tool" || key == "value" || key == "layers") continue; // read below
     try {
       setKey(stroke, key, value);
     } catch (const Error& error) {
@@ -223,13 +224,13 @@ Stroke strokeOfKeys(const Json& json) {
     }
   }
   (void)json.at("samples");
-  setLayers(stroke.brush, json); // the mode tells whether values must be there
+  setLayers(stroke.brush, json); // after the mode, which decides whether values are required
   return stroke;
 }
 
 } // namespace
 
-bool strays(std::span<const StrokeSample> way, const StrokeSample& next, double off) {
+bool deviatesFromChord(std::span<const StrokeSample> way, const StrokeSample& next, double off) {
   const Vec3& start = way.front().position;
   const Vec3 along = next.position - start;
   const double length = along.squaredNorm();
@@ -240,30 +241,30 @@ bool strays(std::span<const StrokeSample> way, const StrokeSample& next, double 
   });
 }
 
-Seed parseSeed(const std::string& text) {
-  return chosen("seed", text, kSeedNames);
+DabAnchor parseDabAnchor(const std::string& text) {
+  return chosen("seed", text, kDabAnchorNames);
 }
 
 std::vector<BrushLayer> layersOf(const Brush& brush) {
   std::vector<BrushLayer> layers{brush};
-  layers.insert(layers.end(), brush.also.begin(), brush.also.end());
+  layers.insert(layers.end(), brush.extra_layers.begin(), brush.extra_layers.end());
   return layers;
 }
 
 const BrushLayer* layerOf(const Brush& brush, Tool tool) {
   if (brush.tool == tool) return &brush;
-  const auto layer = std::find_if(brush.also.begin(), brush.also.end(),
+  const auto layer = std::find_if(brush.extra_layers.begin(), brush.extra_layers.end(),
                                   [&](const BrushLayer& l) { return l.tool == tool; });
-  return layer == brush.also.end() ? nullptr : &*layer;
+  return layer == brush.extra_layers.end() ? nullptr : &*layer;
 }
 
 void validate(const Brush& brush) {
-  requireBetween("radius", brush.radius, 0, kLongest);
-  requireBetween("radius_per_force", brush.radius_per_force, -kLongest, kLongest);
-  requireBetween("least_radius", brush.least_radius, 0, kLongest);
-  requireBetween("most_radius", brush.most_radius, brush.least_radius, kLongest);
-  require(brush.falloff > 0 && brush.falloff <= kMostFalloff, "falloff", brush.falloff,
-          "above 0 and at most " + formatNumber(kMostFalloff));
+  requireBetween("radius", brush.radius, 0, kMaxRadius);
+  requireBetween("radius_per_force", brush.radius_per_force, -kMaxRadius, kMaxRadius);
+  requireBetween("least_radius", brush.min_radius, 0, kMaxRadius);
+  requireBetween("most_radius", brush.max_radius, brush.min_radius, kMaxRadius);
+  require(brush.falloff > 0 && brush.falloff <= kMaxFalloff, "falloff", brush.falloff,
+          "above 0 and at most " + formatNumber(kMaxFalloff));
   validateLayers(brush);
   if (!brush.erases.empty()) {
     if (brush.tool != Tool::erase) throw Error("'erases' belongs to tool erase");
@@ -294,9 +295,9 @@ void requireSamples(const Stroke& stroke) {
 
 Json toJson(const Stroke& stroke) {
   const Brush& brush = stroke.brush;
-  const Brush usual;
+  const Brush defaults;
   Json json = Json::object();
-  if (brush.also.empty()) {
+  if (brush.extra_layers.empty()) {
     json = toJson(static_cast<const BrushLayer&>(brush), std::move(json));
   } else {
     Json layers = Json::array();
@@ -304,14 +305,14 @@ Json toJson(const Stroke& stroke) {
     json.set("layers", std::move(layers));
   }
   json.set("radius", brush.radius).set("falloff", brush.falloff);
-  json.set("shape", textIn(kShapeNames, brush.shape)).set("mode", textIn(kModeNames, brush.mode));
+  json.set("shape", nameIn(kShapeNames, brush.shape)).set("mode", nameIn(kModeNames, brush.mode));
   json.set("front_only", brush.front_only);
   if (brush.radius_per_force != 0) json.set("radius_per_force", brush.radius_per_force);
-  if (brush.least_radius != usual.least_radius) json.set("least_radius", brush.least_radius);
-  if (brush.most_radius != usual.most_radius) json.set("most_radius", brush.most_radius);
-  if (brush.seed != Seed::nearest) json.set("seed", textIn(kSeedNames, brush.seed));
+  if (brush.min_radius != defaults.min_radius) json.set("least_radius", brush.min_radius);
+  if (brush.max_radius != defaults.max_radius) json.set("most_radius", brush.max_radius);
+  if (brush.anchor != DabAnchor::nearest) json.set("seed", nameIn(kDabAnchorNames, brush.anchor));
   if (brush.symmetry != Symmetry::none)
-    json.set("symmetry", textIn(kSymmetryNames, brush.symmetry));
+    json.set("symmetry", nameIn(kSymmetryNames, brush.symmetry));
   if (!brush.erases.empty()) json.set("erases", brush.erases);
   Json samples = Json::array();
   for (const StrokeSample& sample : stroke.samples) {

@@ -7,10 +7,10 @@ namespace patina {
 
 namespace {
 
-// Where the item of that number in the list `strokes` begins, in text that is JSON; 0: nowhere.
+// Returns the line of the given item of the list `strokes` in a JSON text; 0 if there is none.
 std::size_t lineOfStroke(std::string_view text, std::size_t number) {
   std::size_t line = 1, depth = 0, seen = 0, begin = 0;
-  std::string_view word; // the last string outside every list and inner object
+  std::string_view word; // last string outside every list and inner object
   bool quoted = false, in_list = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];

@@ -11,7 +11,7 @@
 namespace patina {
 namespace {
 
-// Trilinear, voxels; a node that is not stored counts as the band, which phi there exceeds.
+// Trilinear, in voxels; an unstored node counts as the band, which its phi exceeds.
 double phiAtGrid(const NodeReader& nodes, const Vec3& q) {
   const SurfaceField& field = nodes.field();
   std::array<int, 3> cell{};
@@ -32,13 +32,11 @@ double phiAtGrid(const NodeReader& nodes, const Vec3& q) {
   return sum;
 }
 
-} // namespace
-
-std::optional<Vec3> firstSurfaceAlong(const SurfaceField& field, const Vec3& origin,
-                                      const Vec3& direction) {
+// Part of the ray inside the grid [voxels from its origin]; nullopt if it misses the grid.
+std::optional<std::pair<double, double>> rangeInGrid(const SurfaceField& field, const Vec3& origin,
+                                                     const Vec3& direction) {
   const Vec3 start = field.grid.toGrid(origin);
   if (!start.allFinite() || !direction.allFinite()) return std::nullopt;
-  // Where the ray is in the grid.
   double from = 0, to = 1e9;
   for (int axis = 0; axis < 3; ++axis) {
     const double last = field.grid.nodes[static_cast<std::size_t>(axis)] - 1;
@@ -50,22 +48,54 @@ std::optional<Vec3> firstSurfaceAlong(const SurfaceField& field, const Vec3& ori
     from = std::max(from, std::min(a, b));
     to = std::min(to, std::max(a, b));
   }
-  const NodeReader nodes(field);
-  double previous = from;
-  for (double t = from; t <= to;) {
-    const double phi = phiAtGrid(nodes, start + t * direction);
-    if (phi <= 0) {
-      double outside = previous, inside = t;
-      while (inside - outside > 0.01) {
-        const double middle = 0.5 * (outside + inside);
-        (phiAtGrid(nodes, start + middle * direction) > 0 ? outside : inside) = middle;
+  if (from > to) return std::nullopt;
+  return std::pair(from, to);
+}
+
+// First point of the ray at which phi crosses `iso` [voxels], to a hundredth of a voxel.
+std::optional<Vec3> crossing(const NodeReader& nodes, const Vec3& start, const Vec3& direction,
+                             const std::pair<double, double>& range, double iso) {
+  const auto excess = [&](double t) { return phiAtGrid(nodes, start + t * direction) - iso; };
+  const bool begins_within = excess(range.first) <= 0;
+  double previous = range.first;
+  for (double t = range.first; t <= range.second;) {
+    const double here = excess(t);
+    if ((here <= 0) != begins_within) {
+      double before = previous, after = t;
+      while (after - before > 0.01) {
+        const double middle = 0.5 * (before + after);
+        ((excess(middle) <= 0) == begins_within ? before : after) = middle;
       }
-      return field.grid.toWorld(start + outside * direction);
+      return nodes.field().grid.toWorld(start + before * direction);
     }
     previous = t;
-    t += std::max(0.25, 0.9 * phi);
+    t += std::max(0.25, 0.9 * std::abs(here));
   }
   return std::nullopt;
+}
+
+} // namespace
+
+std::optional<Vec3> firstSurfaceAlong(const SurfaceField& field, const Vec3& origin,
+                                      const Vec3& direction) {
+  const auto range = rangeInGrid(field, origin, direction);
+  if (!range) return std::nullopt;
+  const NodeReader nodes(field);
+  const Vec3 start = field.grid.toGrid(origin) + range->first * direction;
+  if (phiAtGrid(nodes, start) <= 0) return field.grid.toWorld(start);
+  return crossing(nodes, field.grid.toGrid(origin), direction, *range, 0);
+}
+
+std::optional<Vec3> firstCrossingAlong(const SurfaceField& field, const Vec3& origin,
+                                       const Vec3& direction, double level) {
+  const auto range = rangeInGrid(field, origin, direction);
+  if (!range) return std::nullopt;
+  return crossing(NodeReader(field), field.grid.toGrid(origin), direction, *range,
+                  level / field.grid.voxel);
+}
+
+double distanceAt(const SurfaceField& field, const Vec3& p) {
+  return field.grid.voxel * phiAtGrid(NodeReader(field), field.grid.toGrid(p));
 }
 
 std::optional<SurfacePoint> surfacePointAt(const SurfaceField& field, const TriangleMesh& mesh,

@@ -17,23 +17,23 @@ const UsbLibrary& library() {
   return *table;
 }
 
-// What the kernel tells of those that may not be asked.
+// Reads name and serial number from sysfs for a device that may not be opened.
 void readSysfs(UsbDevice& device) {
   namespace fs = std::filesystem;
   std::error_code code;
   for (const auto& item : fs::directory_iterator("/sys/bus/usb/devices", code)) {
-    if (kernelLine(item.path() / "busnum") != std::to_string(device.bus) ||
-        kernelLine(item.path() / "devnum") != std::to_string(device.address))
+    if (readSysfsLine(item.path() / "busnum") != std::to_string(device.bus) ||
+        readSysfsLine(item.path() / "devnum") != std::to_string(device.address))
       continue;
-    const std::string maker = kernelLine(item.path() / "manufacturer"),
-                      product = kernelLine(item.path() / "product");
+    const std::string maker = readSysfsLine(item.path() / "manufacturer"),
+                      product = readSysfsLine(item.path() / "product");
     device.name = maker.empty() || product.empty() ? maker + product : maker + " " + product;
-    device.serial = kernelLine(item.path() / "serial");
+    device.serial = readSysfsLine(item.path() / "serial");
     return;
   }
 }
 
-UsbDevice described(const UsbFound& found) {
+UsbDevice described(const UsbDescriptor& found) {
   UsbDevice out;
   out.vendor = found.vendor;
   out.product = found.product;
@@ -48,41 +48,42 @@ UsbDevice described(const UsbFound& found) {
   out.haptic = out.name.find(kProbeName) != std::string::npos
                    ? kProbeName
                    : hapticName(found.vendor, found.product);
-  if (out.name.empty()) out.name = usbNumbers(found.vendor, found.product);
-  // A driver of the kernel's is no refusal: it gives way to a claim, and has the interface back.
-  if (!found.openable) out.refusal = found.refusal.value_or(UsbRefusal::other);
+  if (out.name.empty()) out.name = vendorProductText(found.vendor, found.product);
+  // Claiming detaches a kernel driver and releasing attaches it again, so it prevents nothing.
+  if (!found.openable) out.refusal = found.refusal.value_or(UsbAccessError::other);
   if (out.refusal) out.advice = usbAdvice(*out.refusal, found.vendor, found.product);
   return out;
 }
 
 } // namespace
 
-std::string kernelLine(const std::filesystem::path& file) {
+std::string readSysfsLine(const std::filesystem::path& file) {
   std::string text;
   std::getline(std::ifstream(file), text);
-  for (char& c : text) c = c < 0x20 || c > 0x7e ? '?' : c; // it ends on a terminal
+  for (char& c : text) c = c < 0x20 || c > 0x7e ? '?' : c; // shown on a terminal
   return text;
 }
 
 std::vector<UsbDevice> listUsbDevices() {
   std::string cause;
   std::vector<UsbDevice> devices;
-  for (const UsbFound& found : library().list(cause)) devices.push_back(described(found));
+  for (const UsbDescriptor& found : library().list(cause)) devices.push_back(described(found));
   if (!cause.empty()) throw DeviceError(cause);
   return devices;
 }
 
 std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device) {
-  std::optional<UsbRefusal> refusal;
+  std::optional<UsbAccessError> refusal;
   std::string cause;
   std::unique_ptr<UsbTransport> usb = library().open(
-      [&](const UsbFound& found) {
+      [&](const UsbDescriptor& found) {
         return found.bus == device.bus && found.address == device.address;
       },
       refusal, cause);
   if (usb) return usb;
   if (!cause.empty()) throw DeviceError(cause);
-  const std::string who = device.name + " (USB " + usbNumbers(device.vendor, device.product) + ")";
+  const std::string who =
+      device.name + " (USB " + vendorProductText(device.vendor, device.product) + ")";
   if (refusal) throw DeviceError(who + ": " + usbAdvice(*refusal, device.vendor, device.product));
   throw NotAttached(who + " is not attached: plug it in, and its power supply too");
 }
@@ -94,7 +95,7 @@ std::unique_ptr<UsbTransport> openUsb(std::string_view haptic) {
     if (device.openable) return openUsb(device);
     if (!refused) refused = device;
   }
-  if (refused) return openUsb(*refused); // which says why not
+  if (refused) return openUsb(*refused); // throws the reason
   throw NotAttached("no " + std::string(haptic) +
                     " is attached: plug it in, and its power supply too");
 }
@@ -109,7 +110,7 @@ std::function<std::unique_ptr<UsbTransport>()> usbOpener(std::string_view haptic
   using Clock = std::chrono::steady_clock;
   struct Seen {
     std::atomic<bool> changed{false};
-    std::shared_ptr<void> watch{}; // begun when there first is none
+    std::shared_ptr<void> watch{}; // created when no device is found first
     std::optional<NotAttached> absent{};
     Clock::time_point looked{};
   };
@@ -121,7 +122,7 @@ std::function<std::unique_ptr<UsbTransport>()> usbOpener(std::string_view haptic
     try {
       return openUsb(haptic);
     } catch (const NotAttached& absent) {
-      // What comes in between is told, and looked for at the next call.
+      // Arrivals between the search and the watch's start cause another search at the next call.
       if (!seen->watch) {
         seen->watch = watchUsb([all = seen.get()] { all->changed = true; });
         seen->changed = true;
@@ -129,7 +130,7 @@ std::function<std::unique_ptr<UsbTransport>()> usbOpener(std::string_view haptic
       seen->looked = Clock::now();
       if (!seen->watch) throw;
       seen->absent = absent;
-      seen->absent->told = true;
+      seen->absent->notified_by_hotplug = true;
       throw NotAttached(*seen->absent);
     }
   };

@@ -1,4 +1,4 @@
-// What hangs on the USB bus, which of it is a haptic device, and how one is opened.
+// Lists the devices on the USB bus, detects haptic devices and opens them.
 #pragma once
 
 #include <cstdint>
@@ -18,55 +18,56 @@ namespace patina {
 struct UsbDevice {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
-  std::string name;      // from the device, or "vendor:product" where it may not be opened
-  std::string haptic;    // "Force Dimension", "Novint Falcon" ...; empty if it is none that we know
-  bool openable = false; // by this user
-  std::string advice;    // what to do if not: permissions, a driver that holds it
-  int bus = 0, address = 0;            // as in /dev/bus/usb
-  double megabits = 0;                 // of its cable: 12 is full speed; 0 if unknown
-  std::string serial{};                // empty if it says none
-  std::uint16_t release = 0;           // of the device, mostly its firmware: 0x0123 is 1.23
-  std::optional<UsbRefusal> refusal{}; // what forbids it, where advice says what to do
+  std::string name;          // reported by the device, or "vendor:product" if it may not be opened
+  std::string haptic;        // "Force Dimension", "Novint Falcon" ...; empty for other devices
+  bool openable = false;     // true if this user may open it
+  std::string advice;        // remedy if not: permissions, a driver that uses it
+  int bus = 0, address = 0;  // numbers in /dev/bus/usb
+  double megabits = 0;       // link speed [Mbit/s]: 12 is full speed; 0 if unknown
+  std::string serial{};      // empty if the device has none
+  std::uint16_t release = 0; // device release, mostly its firmware: 0x0123 is 1.23
+  std::optional<UsbAccessError> refusal{}; // reason why it cannot be opened
 };
 
-// Every device on the bus; an empty list if there is a bus with nothing on it. Throws DeviceError
-// if the bus cannot be read at all, as in a container without /dev/bus/usb, or without libusb. Any
-// thread; slow.
+// Lists every device on the bus; the list may be empty. Throws DeviceError if the bus cannot be
+// read, as in a container without /dev/bus/usb or without libusb. Any thread; slow.
 std::vector<UsbDevice> listUsbDevices();
 
-// The first device whose `haptic` is this that may be opened; nothing of it is claimed yet. Throws
-// DeviceError with what to do where there is none. Any thread; slow.
+// Opens the first accessible device with this `haptic` name, without claiming an interface. Throws
+// DeviceError with the remedy if there is none. Any thread; slow.
 std::unique_ptr<UsbTransport> openUsb(std::string_view haptic);
-std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device); // this one, where it was listed
+std::unique_ptr<UsbTransport> openUsb(const UsbDevice& device); // opens a listed device
 
-// None is plugged in. `told`: what threw it is told of arrivals, so that asking again costs
-// nothing.
+// No such device is attached. `notified_by_hotplug`: the opener is notified of arrivals, so that a
+// retry without an arrival costs nothing.
 struct NotAttached : DeviceError {
   explicit NotAttached(const std::string& message) : DeviceError(message) {}
-  bool told = false;
+  bool notified_by_hotplug = false;
 };
-// openUsb(haptic), again and again: once there was none, it looks at the bus when something has
-// been plugged in, and every two seconds in case that nobody tells. One thread's at a time.
+// Returns an opener to be called repeatedly, as openUsb(haptic). After a failure it searches the
+// bus again only on a hot-plug event or after two seconds. One thread at a time.
 std::function<std::unique_ptr<UsbTransport>()> usbOpener(std::string_view haptic);
-// UsbLibrary::watch; empty where there is no libusb, either.
+// Calls UsbLibrary::watch; returns an empty pointer without libusb.
 std::shared_ptr<void> watchUsb(std::function<void()> changed);
 
-// What `haptic` says of a probe (docs/usb_protocol.md): whatever its numbers, its name begins so.
+// `haptic` of a probe (docs/usb_protocol.md): its name starts so, for any vendor and product.
 inline constexpr std::string_view kProbeName = "Patina probe";
 
-// The maker or model of a haptic device; empty if vendor and product are none that we know.
+// Maker or model of a haptic device; empty for an unknown vendor and product.
 std::string_view hapticName(std::uint16_t vendor, std::uint16_t product);
 
-// The first line of a file of the kernel's, fit for a terminal; empty where there is none.
-std::string kernelLine(const std::filesystem::path& file);
+// First line of a sysfs attribute with unprintable characters replaced; empty if missing.
+std::string readSysfsLine(const std::filesystem::path& file);
 
-// One line for a person; for a missing permission it holds the udev rule to add.
-std::string usbAdvice(UsbRefusal refusal, std::uint16_t vendor, std::uint16_t product);
-std::string usbNumbers(std::uint16_t vendor, std::uint16_t product); // "0403:cb48"
+// One line for the user; for a missing permission it contains the udev rule to add.
+std::string usbAdvice(UsbAccessError refusal, std::uint16_t vendor, std::uint16_t product);
+std::string vendorProductText(std::uint16_t vendor, std::uint16_t product); // "0403:cb48"
 
-// Rules of udev for all devices that we know, a file's text: whoever sits at the machine may open
-// them. data/70-patina.rules is the same.
-inline constexpr const char* kUdevFile = "70-patina.rules";
+// Udev rules for access to all known devices; identical to data/70-patina.rules.
+inline constexpr const char* kUdevFolder = "/etc/udev/rules.d";
 std::string udevRules();
+// Writes them into `folder` and returns the file. Throws Error if it cannot be written, or holds
+// rules of others.
+std::filesystem::path installUdevRules(const std::filesystem::path& folder);
 
 } // namespace patina

@@ -12,9 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr UsbRequest kGetStatus{0x80, 0, 0, 0}; // of the standard, chapter 9
+constexpr UsbRequest kGetStatus{0x80, 0, 0, 0}; // GET_STATUS (USB 2.0, chapter 9)
 
-// Another program's open device; its own user's, for others may not be looked at.
+// Finds the process that has the device open; other users' processes are not readable.
 std::string holderOf(const UsbDevice& device) {
   char node[64];
   std::snprintf(node, sizeof node, "/dev/bus/usb/%03d/%03d", device.bus, device.address);
@@ -28,7 +28,7 @@ std::string holderOf(const UsbDevice& device) {
     for (fs::directory_iterator item(process.path() / "fd", denied), end; !denied && item != end;
          item.increment(denied))
       if (std::error_code none; fs::read_symlink(item->path(), none) == node)
-        return kernelLine(process.path() / "comm") + " (" + id + ")";
+        return readSysfsLine(process.path() / "comm") + " (" + id + ")";
   }
   return {};
 }
@@ -44,7 +44,7 @@ UsbCheck checkUsb(const UsbDevice& device, UsbTransport& opened, int requests) {
     const UsbCount got = opened.controlIn(kGetStatus, status, 100);
     if (got.result != UsbResult::ok) {
       if (!out.refusal)
-        out.refusal = got.result == UsbResult::gone ? UsbRefusal::gone : UsbRefusal::other;
+        out.refusal = got.result == UsbResult::gone ? UsbAccessError::gone : UsbAccessError::other;
       break;
     }
     out.round_trips.push_back(
@@ -52,30 +52,31 @@ UsbCheck checkUsb(const UsbDevice& device, UsbTransport& opened, int requests) {
   }
   if (device.haptic.empty() || out.refusal) return out;
   if (const UsbResult claimed = opened.claim(0); claimed != UsbResult::ok)
-    out.refusal = claimed == UsbResult::gone ? UsbRefusal::gone : UsbRefusal::held_by_driver;
-  if (out.refusal == UsbRefusal::held_by_driver) out.holder = holderOf(device);
+    out.refusal =
+        claimed == UsbResult::gone ? UsbAccessError::gone : UsbAccessError::held_by_driver;
+  if (out.refusal == UsbAccessError::held_by_driver) out.holder = holderOf(device);
   return out;
 }
 
 UsbCheck checkUsb(const UsbDevice& device, int requests) {
-  if (!device.openable) return {device, device.refusal.value_or(UsbRefusal::other)};
+  if (!device.openable) return {device, device.refusal.value_or(UsbAccessError::other)};
   try {
     return checkUsb(device, *openUsb(device), requests);
   } catch (const DeviceError&) {
-    return {device, UsbRefusal::gone}; // it was there a moment ago
+    return {device, UsbAccessError::gone}; // unplugged after it was listed
   }
 }
 
 std::string stateText(const UsbCheck& check) {
   if (!check.refusal) return "ready";
   switch (*check.refusal) {
-  case UsbRefusal::permission:
+  case UsbAccessError::permission:
     return "no permission";
-  case UsbRefusal::held_by_driver:
+  case UsbAccessError::held_by_driver:
     return "in use by " + (check.holder.empty() ? "a driver or another program" : check.holder);
-  case UsbRefusal::gone:
+  case UsbAccessError::gone:
     return "is gone";
-  case UsbRefusal::other:
+  case UsbAccessError::other:
     break;
   }
   return "does not answer";
@@ -96,11 +97,11 @@ std::vector<SerialProbe> listSerialProbes(const std::string& sys, const std::str
     const std::string port = item->path().filename();
     if (!port.starts_with("ttyACM") && !port.starts_with("ttyUSB")) continue;
     std::error_code none;
-    // The interface, for some drivers a port below it; above it the device.
+    // The link leads to the USB interface or a port below it; the device is a parent.
     fs::path above = fs::canonical(item->path() / "device", none);
     std::string name;
     for (int i = 0; i < 3 && name.empty() && !none; ++i, above = above.parent_path())
-      name = kernelLine(above / "product");
+      name = readSysfsLine(above / "product");
     if (!name.starts_with(kProbeName)) continue;
     const std::string path = dev + "/" + port;
     list.push_back({path, name, ::access(path.c_str(), R_OK | W_OK) == 0});

@@ -1,4 +1,4 @@
-// What is done with libusb, in a library of its own: a program starts, and says so, without it.
+// Interface of the separately loaded libusb part, so that the program also starts without libusb.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +12,34 @@
 
 namespace patina {
 
-// Why a device could not be opened, as libusb sees it.
-enum class UsbRefusal : std::uint8_t { permission, held_by_driver, gone, other };
+// Reason why a device could not be opened (libusb_error).
+enum class UsbAccessError : std::uint8_t { permission, held_by_driver, gone, other };
 
-// A device as the bus tells it, before anything of ours is known of it.
-struct UsbFound {
+// Descriptor data from the enumeration.
+struct UsbDescriptor {
   std::uint16_t vendor = 0, product = 0;
-  std::string name;                    // maker and product; empty if it may not be asked
-  std::string serial{};                // likewise
-  std::uint16_t release = 0;           // of the device, mostly its firmware: 0x0123 is 1.23
-  int bus = 0, address = 0;            // as in /dev/bus/usb
-  double megabits = 0;                 // of its cable; 0 if unknown
-  bool openable = false;               // by this user
-  std::optional<UsbRefusal> refusal{}; // where it is not openable
+  std::string name;          // maker and product; empty if the device may not be opened
+  std::string serial{};      // empty if the device may not be opened
+  std::uint16_t release = 0; // device release, mostly its firmware: 0x0123 is 1.23
+  int bus = 0, address = 0;  // numbers in /dev/bus/usb
+  double megabits = 0;       // link speed [Mbit/s]; 0 if unknown
+  bool openable = false;     // true if this user may open it
+  std::optional<UsbAccessError> refusal{}; // set if the device is not openable
 };
 
 struct UsbLibrary {
-  // Both say in `cause` what went wrong with the bus itself.
-  std::vector<UsbFound> (*list)(std::string& cause);
-  // The first for which `wanted`. nullptr: there is none, or `refusal` of the last that there is.
-  std::unique_ptr<UsbTransport> (*open)(const std::function<bool(const UsbFound&)>& wanted,
-                                        std::optional<UsbRefusal>& refusal, std::string& cause);
-  // Calls `changed` in a thread of its own when a device has come or gone, until what it returns
-  // is let go. Empty where libusb does not tell.
+  // Both set `cause` if the bus itself fails.
+  std::vector<UsbDescriptor> (*list)(std::string& cause);
+  // Opens the first device that satisfies `wanted`. Returns nullptr if there is none, or if none
+  // could be opened; `refusal` is then the last one's.
+  std::unique_ptr<UsbTransport> (*open)(const std::function<bool(const UsbDescriptor&)>& wanted,
+                                        std::optional<UsbAccessError>& refusal, std::string& cause);
+  // Calls `changed` in a separate thread on each hot-plug event until the returned pointer is
+  // released. Returns an empty pointer if libusb does not support hot-plug.
   std::shared_ptr<void> (*watch)(std::function<void()> changed);
 };
 
-// Loaded with the first call. nullptr where it cannot be, or where this build has none; `cause`
-// says what to do.
+// Loads the library once. Returns nullptr and the remedy in `cause` if that is impossible.
 const UsbLibrary* usbLibrary(std::string& cause);
 
 } // namespace patina

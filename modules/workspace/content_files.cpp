@@ -15,10 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kNameDigits = 16;
-constexpr std::size_t kOldNameDigits = 8; // of version 1
+constexpr std::size_t kOldNameDigits = 8; // file names of version 1
 constexpr std::string_view kHex = "0123456789abcdef";
 
-// "ball-0123456789abcdef.ply" -> the digits; empty if it is no such name.
+// "ball-0123456789abcdef.ply" -> the digits; "" if the name has another form.
 std::string_view hashIn(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   const std::size_t dash = name.rfind('-');
@@ -42,13 +42,13 @@ bool isJournalName(std::string_view name) {
   return !name.empty() && name.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-struct Known {
+struct ContentCache {
   std::mutex guard;
-  std::map<std::weak_ptr<const void>, known::Digest, std::owner_less<>> digests;
+  std::map<std::weak_ptr<const void>, content_cache::Digest, std::owner_less<>> digests;
   std::map<std::pair<std::type_index, std::string>, std::weak_ptr<const void>> values;
-  std::size_t limit = 64; // of entries, until the dead ones are looked for
+  std::size_t limit = 64; // number of entries at which expired ones are removed
 
-  void forgetDead() {
+  void removeExpired() {
     if (digests.size() + values.size() < limit) return;
     std::erase_if(digests, [](const auto& item) { return item.first.expired(); });
     std::erase_if(values, [](const auto& item) { return item.second.expired(); });
@@ -56,10 +56,10 @@ struct Known {
   }
 };
 
-// A memory of values that cannot change holds no state that anybody could see.
-Known& memory() {
-  static Known known;
-  return known;
+// A static is safe here: it only caches immutable values.
+ContentCache& cache() {
+  static ContentCache instance;
+  return instance;
 }
 
 } // namespace
@@ -76,12 +76,12 @@ fs::path insidePath(const fs::path& folder, const std::string& relative) {
   return full;
 }
 
-// Behind a link lie files of others.
+// Throws if a stored folder is a link that leads out of the workspace.
 void refuseLinks(const fs::path& folder) {
   for (const char* part : kStoredFolders) insidePath(folder, part);
 }
 
-// Nothing where a link is, or a file that cannot be read or has another size: it is not ours.
+// Returns nullopt for a link, an unreadable file or one of another size; it is then written again.
 std::optional<std::string> storedBytes(const fs::path& path, std::size_t size) {
   std::error_code code;
   if (fs::symlink_status(path, code).type() != fs::file_type::regular ||
@@ -95,7 +95,8 @@ std::optional<std::string> storedBytes(const fs::path& path, std::size_t size) {
 }
 
 std::optional<ContentFile> findStored(const fs::path& folder, const std::string& prefix,
-                                      const std::string& extension, const known::Digest& digest) {
+                                      const std::string& extension,
+                                      const content_cache::Digest& digest) {
   refuseLinks(folder);
   ContentFile file{pathFor(prefix, extension, digest.sha256), digest.sha256};
   const auto bytes = storedBytes(folder / file.path, digest.size);
@@ -110,9 +111,9 @@ ContentFile storeContent(const fs::path& folder, const std::string& prefix,
   const fs::path path = folder / file.path;
   if (storedBytes(path, bytes.size()) == bytes) return file;
   makeFolder(path.parent_path());
-  std::error_code code; // the file behind a link, which a write would reach, is another's
+  std::error_code code; // a link's target must not be overwritten
   if (fs::is_symlink(path, code)) fs::remove(path, code);
-  writeFileAtomically(path, bytes);
+  writeFileDurably(path, bytes);
   return file;
 }
 
@@ -135,9 +136,10 @@ std::string loadNamed(const fs::path& folder, const std::string& relative, Conte
   const std::string digest = sha256(bytes);
   const std::string_view wanted = hashIn(relative);
   if (wanted.empty() || !digest.starts_with(wanted))
-    throw FileError(path.string(), 0,
-                    std::string("is not the file that was saved (its name says another hash)") +
-                        kAdvice);
+    throw FileError(
+        path.string(), 0,
+        std::string("is not the file that was saved (its SHA-256 differs from its name)") +
+            kAdvice);
   if (found) *found = {relative, digest};
   return bytes;
 }
@@ -145,7 +147,7 @@ std::string loadNamed(const fs::path& folder, const std::string& relative, Conte
 bool isStoredName(const std::string& folder, const std::string& name) {
   if (folder.empty())
     return isJournalName(name) || isTemporaryFor(kManifestName, name) || name == kUnfinishedName;
-  // What killed savers leave: of version 1, and ".NAME.123-0.tmp".
+  // Temporary files of interrupted saves: those of version 1, and ".NAME.123-0.tmp".
   if (name.starts_with(".saving-") || name.starts_with("..saving-")) return true;
   if (name.starts_with('.')) {
     const std::size_t end = name.rfind('.', name.size() - 5);
@@ -156,29 +158,29 @@ bool isStoredName(const std::string& folder, const std::string& name) {
   return !hashIn(name).empty();
 }
 
-namespace known {
+namespace content_cache {
 
 std::optional<Digest> digest(const std::shared_ptr<const void>& value) {
-  Known& all = memory();
+  ContentCache& all = cache();
   const std::lock_guard hold(all.guard);
   const auto found = all.digests.find(value);
   return found == all.digests.end() ? std::nullopt : std::optional(found->second);
 }
 
 void remember(const std::shared_ptr<const void>& value, const std::type_info& type, Digest digest) {
-  Known& all = memory();
+  ContentCache& all = cache();
   const std::lock_guard hold(all.guard);
-  all.forgetDead();
+  all.removeExpired();
   all.values[{type, digest.sha256}] = value;
   all.digests[value] = std::move(digest);
 }
 
 std::shared_ptr<const void> find(const std::type_info& type, const std::string& sha256) {
-  Known& all = memory();
+  ContentCache& all = cache();
   const std::lock_guard hold(all.guard);
   const auto found = all.values.find({type, sha256});
   return found == all.values.end() ? nullptr : found->second.lock();
 }
 
-} // namespace known
+} // namespace content_cache
 } // namespace patina

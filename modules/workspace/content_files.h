@@ -1,4 +1,4 @@
-// Files that are named by what they hold, and so never change. Internal to the workspace.
+// Content-addressed files, named by their hash and never changed. Internal to the workspace.
 #pragma once
 
 #include <filesystem>
@@ -12,36 +12,36 @@
 
 namespace patina {
 
-// What to do about a file that is not what was saved; follows a message.
+// Remedy for a damaged file; appended to a message.
 inline constexpr const char* kAdvice =
-    "; put it back from a copy, or keep what is whole with patina scene --recover";
+    "; restore it from a backup, or recover the rest with patina scene --recover";
 
-// folder/prefix-HASH.extension, on disk when it returns; one that is there already, whole, is kept.
-// FileError, and nothing written, where a folder of the workspace's is a link that leads out of it.
+// Writes folder/prefix-HASH.extension to disk unless it is there unchanged. Throws FileError and
+// writes nothing if a folder of the workspace is a link that leads out of it.
 ContentFile storeContent(const std::filesystem::path& folder, const std::string& prefix,
                          const std::string& extension, std::string_view bytes);
-// Throws FileError: missing, leaves the folder (through a link, too), not the bytes that were
-// stored.
+// Throws FileError if the file is missing, lies outside the folder (also through a link) or does
+// not have the stored hash.
 std::string loadContent(const std::filesystem::path& folder, const ContentFile& file);
-// The same for a file whose name says its hash.
+// The same for a file whose name contains its hash.
 std::string loadNamed(const std::filesystem::path& folder, const std::string& path,
                       ContentFile* found = nullptr);
 
-// Stands in a folder from before its first file until its workspace.json is there: what a killed
-// saver leaves, in place of which another may save.
+// Marker file of a first save in progress. A folder that still contains it was left by an
+// interrupted save and may be overwritten.
 inline constexpr const char* kUnfinishedName = ".unfinished";
 
-// Absolute; throws FileError naming workspace.json.
+// Returns an absolute path; throws FileError naming workspace.json.
 std::filesystem::path insidePath(const std::filesystem::path& folder, const std::string& relative);
 
-// A name that saving gives, or a temporary one of it: what saving may remove. `folder` is the
+// Returns true for a file name that saving uses, also temporarily, and may remove. `folder` is the
 // file's own, relative to the workspace.
 bool isStoredName(const std::string& folder, const std::string& name);
 inline constexpr const char* kStoredFolders[] = {"meshes", "paint", "scans", "states"};
 
-// What immutable values hash to, for as long as they live: saving again need not encode what did
-// not change, and loading finds what is in memory already. Any thread.
-namespace known {
+// Cache of the hashes of immutable values while they live: saving skips the encoding of unchanged
+// values, and loading reuses values in memory. Thread-safe.
+namespace content_cache {
 struct Digest {
   std::string sha256;
   std::size_t size = 0;
@@ -49,40 +49,40 @@ struct Digest {
 std::optional<Digest> digest(const std::shared_ptr<const void>& value);
 void remember(const std::shared_ptr<const void>& value, const std::type_info& type, Digest digest);
 std::shared_ptr<const void> find(const std::type_info& type, const std::string& sha256);
-} // namespace known
+} // namespace content_cache
 
-// The file of `value`, encoded only where it must be.
+// Stores `value` and encodes it only if needed.
 template <typename T, typename Encode>
 ContentFile storeValue(const std::filesystem::path& folder, const std::string& prefix,
                        const std::string& extension, const std::shared_ptr<const T>& value,
                        const Encode& encode);
 
-// Verified from the same bytes that are decoded, so that the file cannot change in between.
+// Verifies the same bytes that it decodes, so that the file cannot change in between.
 template <typename T, typename Decode>
 std::shared_ptr<const T> loadValue(const std::filesystem::path& folder, const ContentFile& file,
                                    const Decode& decode) {
   const std::string bytes = loadContent(folder, file);
-  if (const auto found = known::find(typeid(T), file.sha256))
+  if (const auto found = content_cache::find(typeid(T), file.sha256))
     return std::static_pointer_cast<const T>(found);
   auto value = std::make_shared<const T>(decode(bytes, (folder / file.path).string()));
-  known::remember(value, typeid(T), {file.sha256, bytes.size()});
+  content_cache::remember(value, typeid(T), {file.sha256, bytes.size()});
   return value;
 }
 
-// Whether the file is there, whole.
+// Returns the file if it is there unchanged.
 std::optional<ContentFile> findStored(const std::filesystem::path& folder,
                                       const std::string& prefix, const std::string& extension,
-                                      const known::Digest& digest);
+                                      const content_cache::Digest& digest);
 
 template <typename T, typename Encode>
 ContentFile storeValue(const std::filesystem::path& folder, const std::string& prefix,
                        const std::string& extension, const std::shared_ptr<const T>& value,
                        const Encode& encode) {
-  if (const auto digest = known::digest(value))
+  if (const auto digest = content_cache::digest(value))
     if (const auto file = findStored(folder, prefix, extension, *digest)) return *file;
   const std::string bytes = encode(*value);
   const ContentFile file = storeContent(folder, prefix, extension, bytes);
-  known::remember(value, typeid(T), {file.sha256, bytes.size()});
+  content_cache::remember(value, typeid(T), {file.sha256, bytes.size()});
   return file;
 }
 

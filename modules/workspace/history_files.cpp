@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kJournalStart = "journal-";
 constexpr std::string_view kJournalEnd = ".jsonl";
 
-// 0 for a name that is none.
+// Returns 0 for a name of another form.
 std::uint64_t journalNumber(std::string_view name) {
   if (!name.starts_with(kJournalStart) || !name.ends_with(kJournalEnd)) return 0;
   name.remove_prefix(kJournalStart.size());
@@ -43,12 +43,12 @@ const JournalRecord* recordAt(const JournalLines& lines, std::uint64_t event) {
   return index < lines.records.size() ? &lines.records[index] : nullptr;
 }
 
-// Files of one folder of the workspace, "" = its own.
+// Files of one folder of the workspace; "" = the workspace folder.
 void removeUnusedIn(const fs::path& folder, const std::string& part,
                     const std::set<std::string>& used) {
   std::vector<fs::path> unused;
   std::error_code code;
-  // Behind a link lie files of others.
+  // A link leads to files outside the workspace.
   if (!part.empty() && fs::is_symlink(folder / part, code)) return;
   for (fs::directory_iterator item(folder / part, code), end; !code && item != end;
        item.increment(code)) {
@@ -73,20 +73,20 @@ std::string nextJournalName(const fs::path& folder) {
   return std::string(kJournalStart) + std::to_string(number) + std::string(kJournalEnd);
 }
 
-std::string checkOf(const JournalLines& lines, std::uint64_t event) {
+std::string checksumOf(const JournalLines& lines, std::uint64_t event) {
   const JournalRecord* record = recordAt(lines, event);
-  return record ? std::string(record->check) : std::string();
+  return record ? std::string(record->checksum) : std::string();
 }
 
 std::uint64_t countOf(const JournalLines& lines) {
   return lines.records.empty() ? 0 : lines.records.back().number;
 }
 
-std::string headingOf(const JournalLines& lines) {
-  const JournalRecord* heading = recordAt(lines, 0);
-  if (!heading) return "";
+std::string headerOf(const JournalLines& lines) {
+  const JournalRecord* header = recordAt(lines, 0);
+  if (!header) return "";
   try {
-    return parseJson(heading->text, "heading").at("from").asString();
+    return parseJson(header->text, "heading").at("from").asString();
   } catch (const Error&) {
     return "";
   }
@@ -95,7 +95,7 @@ std::string headingOf(const JournalLines& lines) {
 std::vector<StoredState> statesIn(const JournalLines& lines) {
   std::vector<StoredState> states;
   for (const JournalRecord& record : lines.records) {
-    // Most records are long strokes, which need not be understood for this.
+    // Most records are long strokes; this skips parsing them.
     if (record.text.substr(0, 64).find(",\"scene\":") == std::string_view::npos) continue;
     const Json json = parseJson(record.text, "record");
     if (const Json* scene = json.find("scene"))
@@ -105,14 +105,14 @@ std::vector<StoredState> statesIn(const JournalLines& lines) {
 }
 
 std::string mismatch(const JournalLines& lines, const std::string& first_state, std::uint64_t event,
-                     const std::string& check) {
+                     const std::string& checksum) {
   if (lines.records.empty()) return "holds nothing";
-  if (headingOf(lines) != first_state) return "is the journal of another workspace";
+  if (headerOf(lines) != first_state) return "is the journal of another workspace";
   if (countOf(lines) < event) {
     return "holds " + std::to_string(countOf(lines)) + " of the " + std::to_string(event) +
            " edits that were saved";
   }
-  if (!check.empty() && checkOf(lines, event) != check)
+  if (!checksum.empty() && checksumOf(lines, event) != checksum)
     return "is the journal of another workspace";
   return "";
 }
@@ -132,7 +132,7 @@ void removeUnused(const fs::path& folder, const Manifest& manifest, const Journa
       use(parseManifest(loadNamed(folder, state.file), state.file));
     }
   } catch (const Error&) {
-    return; // what a state that cannot be read needs is not known
+    return; // an unreadable state may need any file
   }
   removeUnusedIn(folder, "", used);
   for (const char* part : kStoredFolders) removeUnusedIn(folder, part, used);

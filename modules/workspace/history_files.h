@@ -14,24 +14,25 @@ namespace patina {
 std::vector<std::string> journalNames(const std::filesystem::path& folder); // newest first
 std::string nextJournalName(const std::filesystem::path& folder);
 
-// The check of record `event` (0: of the heading); "" if there is no such record.
-std::string checkOf(const JournalLines& lines, std::uint64_t event);
-std::uint64_t countOf(const JournalLines& lines); // without the heading
-std::string headingOf(const JournalLines& lines); // the state it begins from; "" without one
-// States that records name, each with its record's number.
+// Checksum of record `event` (0: the header); "" if there is no such record.
+std::string checksumOf(const JournalLines& lines, std::uint64_t event);
+std::uint64_t countOf(const JournalLines& lines); // without the header
+// state file that the journal starts from; "" if there is no header
+std::string headerOf(const JournalLines& lines);
+// States named by records, each with its record's number.
 std::vector<StoredState> statesIn(const JournalLines& lines);
 
-// Why this is not the journal that a workspace with this first state was saved with; "" if it is.
-// `check` "" = not known.
+// Returns why the journal does not belong to a workspace saved with this first state; "" if it
+// does. `check` "" = unknown.
 std::string mismatch(const JournalLines& lines, const std::string& first_state, std::uint64_t event,
-                     const std::string& check);
+                     const std::string& checksum);
 
-// Files under names that saving gives, which nothing needs any more. Whatever cannot be removed,
-// or judged, stays: it only takes room.
+// Removes files with names that saving uses, if nothing refers to them. Files that cannot be
+// removed or checked stay and only take space.
 void removeUnused(const std::filesystem::path& folder, const Manifest& manifest,
                   const JournalLines& lines);
 
-// What can still be read (openWorkspace with `recover`).
+// Recovers what is readable (openWorkspace with `recover`).
 OpenedWorkspace recoverWorkspace(const std::filesystem::path& folder);
 
 } // namespace patina

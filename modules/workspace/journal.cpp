@@ -5,19 +5,19 @@
 #include "core/file.h"
 #include "core/utc_time.h"
 #include "workspace/journal_lines.h"
-#include "workspace/older_values.h"
+#include "workspace/migrations.h"
 
 namespace patina {
 namespace {
 
-constexpr std::int64_t kMostSteps = 1'000'000'000;
+constexpr std::int64_t kMaxSteps = 1'000'000'000;
 constexpr std::int64_t kLatest = 100'000'000'000; // [s], the year 5138
 
 struct Writer {
   Json& json;
   void operator()(const Stroke& stroke) const { json.set("stroke", toJson(stroke)); }
   void operator()(const ValueEdit& edit) const {
-    Json list = Json::array(); // and no object: the order counts, and a key may come twice
+    Json list = Json::array(); // not an object: the order counts, and keys may repeat
     for (const auto& [key, value] : edit.values) {
       Json pair = Json::array();
       pair.push(key);
@@ -42,13 +42,13 @@ ValueEdit valuesFrom(const Json& json) {
     if (both.size() != 2) throw Error("a value needs a key and a text");
     edit.values.emplace_back(both[0].asString(), both[1].asString());
   }
-  renewValues(edit.values); // a journal outlives versions, and none is ever changed
+  migrateValues(edit.values); // a journal may be from an older version and is never changed
   return edit;
 }
 
 int stepsFrom(const Json& json) {
   const std::int64_t steps = json.asInteger();
-  if (steps < 1 || steps > kMostSteps) throw Error("steps must be 1 or more");
+  if (steps < 1 || steps > kMaxSteps) throw Error("steps must be 1 or more");
   return static_cast<int>(steps);
 }
 
@@ -59,11 +59,17 @@ JournalEvent whatFrom(const Json& json) {
     return StoredSceneEdit{stored->at("what").asString(), stored->at("state").asString()};
   if (const Json* steps = json.find("undo")) return UndoEvent{stepsFrom(*steps)};
   if (const Json* steps = json.find("redo")) return RedoEvent{stepsFrom(*steps)};
-  throw Error("holds no edit that this program knows");
+  throw Error("has no edit of a known kind");
+}
+
+std::string intentFrom(const Json& json) {
+  const Json* intent = json.find("intent");
+  return intent ? intent->asString() : "";
 }
 
 JournalEvent eventFrom(const Json& json) {
   JournalEvent event = whatFrom(json);
+  event.intent = intentFrom(json);
   const Json* time = json.find("time");
   if (!time) return event;
   event.time = time->asInteger();
@@ -83,10 +89,12 @@ JournalText parseJournal(std::string_view text) {
     const JournalRecord& record = lines.records[i];
     try {
       const Json json = parseJson(record.text, "record");
-      if (record.number == 0)
+      if (record.number == 0) {
         journal.from = json.at("from").asString();
-      else
+        journal.intent = intentFrom(json);
+      } else {
         journal.events.push_back(eventFrom(json));
+      }
     } catch (const Error& error) {
       journal.torn = false;
       journal.damaged_line = i + 1;
@@ -97,18 +105,21 @@ JournalText parseJournal(std::string_view text) {
   return journal;
 }
 
-std::string journalHeading(const std::string& from) {
+std::string journalHeader(const std::string& from, const std::string& intent) {
   Json json = Json::object();
   json.set("n", 0).set("from", from);
-  return sealed(json.dump(-1));
+  if (!intent.empty()) json.set("intent", intent);
+  return withChecksum(json.dump(-1));
 }
 
-std::string journalLine(std::uint64_t number, const JournalEvent& event) {
+std::string journalLine(std::uint64_t number, const JournalEvent& event, bool more) {
   Json json = Json::object();
   json.set("n", static_cast<std::int64_t>(number));
+  if (more) json.set("more", true); // journalLines() looks for it here
   if (event.time != 0) json.set("time", event.time);
   std::visit(Writer{json}, event);
-  return sealed(json.dump(-1));
+  if (!event.intent.empty()) json.set("intent", event.intent);
+  return withChecksum(json.dump(-1));
 }
 
 struct JournalWriter::Impl {
@@ -120,18 +131,18 @@ JournalWriter::JournalWriter(const std::filesystem::path& path, std::uint64_t ev
     : impl_(new Impl{AppendFile(path), events}) {
   const std::string text = impl_->file.content();
   const JournalLines lines = journalLines(text);
-  const bool heading = !lines.records.empty() && lines.records.front().number == 0;
-  const std::size_t found = lines.records.size() - (heading ? 1 : 0);
+  const bool header = !lines.records.empty() && lines.records.front().number == 0;
+  const std::size_t found = lines.records.size() - (header ? 1 : 0);
   const std::string wanted = " where " + std::to_string(events) + " were read";
   if (found < events)
     throw FileError(path.string(), 0, "has only " + std::to_string(found) + " records" + wanted);
-  // A whole record whose JSON was refused when it was read was refused as damaged.
+  // A complete record that this program read and rejected counts as damaged, not as new.
   if (found > events && parseJournal(text).events.size() > events) {
     throw FileError(path.string(), 0,
                     "another program has written it since: " + std::to_string(found) + " records" +
                         wanted + "; open the workspace again");
   }
-  const std::size_t kept = events + (heading ? 1 : 0);
+  const std::size_t kept = events + (header ? 1 : 0);
   const std::size_t end = kept == 0 ? 0 : lines.records[kept - 1].end;
   if (end == text.size()) return;
   if (!lines.torn || found > events)
@@ -141,11 +152,16 @@ JournalWriter::JournalWriter(const std::filesystem::path& path, std::uint64_t ev
 
 JournalWriter::~JournalWriter() = default;
 
-void JournalWriter::append(JournalEvent event) {
-  if (event.time == 0) event.time = utcSeconds();
-  if (const Stroke* stroke = std::get_if<Stroke>(&event)) validate(*stroke);
-  impl_->file.append(journalLine(impl_->events + 1, event));
-  ++impl_->events;
+void JournalWriter::append(std::vector<JournalEvent> events) {
+  std::string text;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    JournalEvent& event = events[i];
+    if (event.time == 0) event.time = utcSeconds();
+    if (const Stroke* stroke = std::get_if<Stroke>(&event)) validate(*stroke);
+    text += journalLine(impl_->events + i + 1, event, i + 1 < events.size());
+  }
+  impl_->file.append(text);
+  impl_->events += events.size();
 }
 
 std::uint64_t JournalWriter::events() const {

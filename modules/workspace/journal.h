@@ -1,4 +1,4 @@
-// The journal of a workspace: every edit, undo and redo, one record a line, none ever changed.
+// Journal of a workspace: every edit, undo and redo, one record per line, append-only.
 #pragma once
 
 #include <cstdint>
@@ -21,46 +21,49 @@ struct RedoEvent {
   int steps = 1;
   bool operator==(const RedoEvent&) const = default;
 };
-// A SceneEdit as it stands in the journal: its scene is a state file of the workspace.
+// A SceneEdit in the journal: its scene is a state file of the workspace.
 struct StoredSceneEdit {
   std::string what;
   std::string state; // path relative to the folder
   bool operator==(const StoredSceneEdit&) const = default;
 };
-// Equal where the variants are, whenever they were done.
+// Equality ignores time and intent.
 struct JournalEvent : std::variant<Stroke, ValueEdit, StoredSceneEdit, UndoEvent, RedoEvent> {
   using variant::variant;
-  std::int64_t time = 0; // when, in seconds since 1970 UTC; 0 = not known: an older journal
+  std::int64_t time = 0; // seconds since 1970 UTC; 0 = unknown, as in an older journal
+  std::string intent;    // the caller's name of the command that made it; may be empty
 };
 
 struct JournalText {
-  std::string from; // the state file that the first record follows; "" where no heading says so
-  std::vector<JournalEvent> events; // whole records from the first on
-  // What follows them: a record that was being written when the program or the machine stopped
-  // (torn), or records that are damaged or out of order (line and cause).
+  std::string from;                 // state file before the first record; "" without a header
+  std::string intent;               // the id that the making command was given; may be empty
+  std::vector<JournalEvent> events; // complete records up to the first fault
+  // Fault after them: an incomplete record from a crash (torn), or damaged records or records out
+  // of order (line and cause).
   bool torn = false;
   std::size_t damaged_line = 0; // 0 = none
   std::string damage;
 };
-// A record carries its number (from 1) and a checksum over itself. Bounded; never throws for bad
-// text.
+// A record has a number (from 1) and a checksum. Memory is bounded; invalid text does not throw.
 JournalText parseJournal(std::string_view text);
-std::string journalHeading(const std::string& from);                      // line 1, with '\n'
-std::string journalLine(std::uint64_t number, const JournalEvent& event); // with '\n'
+// Both with '\n'. `more`: the record counts only together with the next one.
+std::string journalHeader(const std::string& from, const std::string& intent = {});
+std::string journalLine(std::uint64_t number, const JournalEvent& event, bool more = false);
 
-// The file open for appending, locked against a second writer. append() returns when the record is
-// on disk (fsync). On failure throws FileError, and the file ends where it ended before.
+// Appends to the file and locks it against other writers. append() returns when the records are on
+// disk (fsync); after a crash all of them are there or none. On failure it throws FileError and
+// leaves the file unchanged.
 class JournalWriter {
  public:
-  // The file must exist (saveWorkspace begins it). Cuts off what follows the first `events`
-  // records: a torn record; damaged ones are first copied beside the file, as NAME.damaged. Throws
-  // FileError if the file is locked by another program, has fewer records, or has a whole one more:
-  // then another program has written it since it was read.
+  // The file must exist (saveWorkspace makes it). Truncates it after the first `events` records;
+  // damaged records are first copied to NAME.damaged. Throws FileError if another program holds the
+  // lock, or the file has fewer records, or a complete one more, which another program then wrote.
   JournalWriter(const std::filesystem::path& path, std::uint64_t events);
   ~JournalWriter();
-  // Stamped with the time now if it has none. Error, too, for a stroke that could not be read
-  // again.
-  void append(JournalEvent event);
+  // Adds the present time to events that have none. Throws Error for a stroke that could not be
+  // read again.
+  void append(std::vector<JournalEvent> events);
+  void append(JournalEvent event) { append(std::vector<JournalEvent>{std::move(event)}); }
   std::uint64_t events() const;
 
  private:

@@ -1,4 +1,4 @@
-// Lines of a journal without what they mean: numbers and checksums. Internal to the workspace.
+// Numbers and checksums of a journal's lines, without their content. Internal to the workspace.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +9,28 @@
 
 namespace patina {
 
-// {"n":7,"stroke":{...},"check":"0123456789abcdef"}: the check is over all that stands before it.
-inline constexpr std::string_view kCheckKey = ",\"check\":\"";
-inline constexpr std::size_t kCheckDigits = 16;
+// {"n":7,"stroke":{...},"check":"0123456789abcdef"}: the checksum covers all text before it.
+inline constexpr std::string_view kChecksumKey = ",\"check\":\"";
+inline constexpr std::size_t kChecksumDigits = 16;
 
-std::string sealed(std::string record); // "{...}" to a line with its check and '\n'
+std::string withChecksum(std::string record); // "{...}" to a line with its checksum and '\n'
 
 struct JournalRecord {
-  std::uint64_t number = 0; // 0 = the heading
+  std::uint64_t number = 0; // 0 = the header
+  bool more = false;        // the command's edits are complete only with the next record
   std::string_view text;    // the whole line without '\n', JSON
-  std::string_view check;
-  std::size_t end = 0; // offset of what follows the line
+  std::string_view checksum;
+  std::size_t end = 0; // offset of the next line
 };
 
 struct JournalLines {
-  std::vector<JournalRecord> records; // the heading, if any, first; numbers ascend without a gap
+  // The header first, if any; numbers are consecutive, and no command is incomplete.
+  std::vector<JournalRecord> records;
   bool torn = false;
   std::size_t damaged_line = 0;
   std::string damage;
 };
-// Views into `text`.
+// The result holds views into `text`.
 JournalLines journalLines(std::string_view text);
 
 } // namespace patina

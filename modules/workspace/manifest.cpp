@@ -1,11 +1,12 @@
 #include "workspace/manifest.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
-#include "workspace/older_values.h"
+#include "workspace/migrations.h"
 
 namespace patina {
 namespace {
@@ -35,7 +36,7 @@ Pose poseFrom(const Json& json) {
   return pose;
 }
 
-// A workspace travels between people: it must not make a reader open files elsewhere.
+// Workspaces are shared: a path must not make the reader open files elsewhere.
 void requireInside(const std::string& relative) {
   const std::filesystem::path path(relative);
   bool inside = !relative.empty() && path.is_relative();
@@ -87,7 +88,7 @@ Json toJson(const ManifestPaint& paint) {
   Json json = Json::object();
   if (paint.layout) {
     Json layout = paint.layout->file ? toJson(*paint.layout->file) : Json::object();
-    layout.set("made", paint.layout->made).set("charts", paint.layout->charts);
+    layout.set("made", paint.layout->generated).set("charts", paint.layout->charts);
     json.set("layout", std::move(layout));
   }
   if (paint.color) json.set("color", toJson(*paint.color));
@@ -152,7 +153,7 @@ std::string textOf(const Json& value) {
   return value.isString() ? value.asString() : formatNumber(value.asNumber());
 }
 
-// A whole number without the ".0" that a double carries.
+// Writes a whole number without the ".0" of a double.
 Json jsonOf(const std::string& text) {
   const std::optional<double> number = parseNumber(text);
   if (!number) return text;
@@ -175,10 +176,24 @@ Manifest manifestFrom(const Json& json) {
   std::vector<std::pair<std::string, std::string>> list;
   for (const auto& [key, value] : json.at("values").asObject())
     list.emplace_back(key, textOf(value));
-  if (version < 3) renewValues(list);
+  if (version < 3) migrateValues(list);
   setValues(manifest.values, list);
   if (version >= 2) readHistory(json, manifest);
   return manifest;
+}
+
+// Paths and messages end at a NUL, so that a name with one would stand for another.
+void requireNoNul(std::string_view text, const std::string& name) {
+  constexpr std::string_view kNul = "\\u0000";
+  for (std::size_t at = text.find(kNul); at != std::string_view::npos;
+       at = text.find(kNul, at + 1)) {
+    const std::size_t before = text.find_last_not_of('\\', at);
+    if ((at - before) % 2 == 0) continue; // an escaped backslash before a 'u'
+    const auto line =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    throw FileError(name, static_cast<std::size_t>(line) + 1,
+                    "a text holds the character NUL (\\u0000), which no name may have");
+  }
 }
 
 } // namespace
@@ -207,7 +222,7 @@ Json toJson(const Manifest& manifest) {
   json.set("event", static_cast<std::int64_t>(manifest.event));
   if (!manifest.journal) return json;
   Json journal = Json::object();
-  journal.set("file", manifest.journal->file).set("check", manifest.journal->check);
+  journal.set("file", manifest.journal->file).set("check", manifest.journal->checksum);
   Json states = Json::array();
   for (const ManifestState& state : manifest.states) {
     Json item = Json::object();
@@ -221,6 +236,7 @@ Json toJson(const Manifest& manifest) {
 
 Manifest parseManifest(std::string_view text, const std::string& name) {
   const Json json = parseJson(text, name);
+  requireNoNul(text, name);
   try {
     return manifestFrom(json);
   } catch (const FileError&) {

@@ -1,4 +1,4 @@
-// workspace.json and the states beside it: what they say, apart from the files that they name.
+// Contents of workspace.json and of state files, without the files that they name.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace patina {
 
-// Read too: 1, without paint and history; 2, whose contact was another (older_values.h); 3, without
-// scans, which a scene without scans is still written as.
+// Older versions are read: 1 has no paint and no history; 2 has another contact law
+// (migrations.h); 3 has no scans. A scene without scans is still written as version 3.
 inline constexpr int kWorkspaceVersion = 4;
 inline constexpr const char* kManifestName = "workspace.json";
 
@@ -25,7 +25,7 @@ struct ContentFile {
 };
 
 struct ManifestLayout {
-  bool made = false;
+  bool generated = false;
   int charts = 0;
   std::optional<ContentFile> file; // absent: the mesh's own texture coordinates
 };
@@ -45,7 +45,7 @@ struct ManifestObject {
 struct ManifestScan {
   std::string name;
   std::map<std::string, ContentFile> files;
-  std::string folder; // of its frames, relative to the workspace and mostly outside; may be empty
+  std::string folder; // frames, relative to the workspace and usually outside it; may be empty
   std::string frames;
 };
 
@@ -55,15 +55,15 @@ struct ManifestState {
 };
 
 struct ManifestJournal {
-  std::string file;  // relative to the folder
-  std::string check; // of the record `event`, or of the heading: tells another journal
+  std::string file;     // relative to the folder
+  std::string checksum; // checksum of record `event` or of the header; detects another journal
 };
 
 struct Manifest {
   std::vector<ManifestObject> objects;
   std::vector<ManifestScan> scans;
   Scene values;                           // everything but the objects and scans
-  std::uint64_t event = 0;                // how many records of the journal are in it
+  std::uint64_t event = 0;                // number of journal records that the scene includes
   std::optional<ManifestJournal> journal; // absent in a state, and in version 1
   std::vector<ManifestState> states;
 };
@@ -74,7 +74,6 @@ Json toJson(const Manifest& manifest);
 Manifest parseManifest(std::string_view text, const std::string& name);
 Manifest readManifest(const std::filesystem::path& folder);
 
-// Every file that the objects and scans need.
 std::vector<ContentFile> filesOf(const Manifest& manifest);
 
 } // namespace patina

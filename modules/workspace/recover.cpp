@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What `read` returns, or nothing and a note. A disk that refuses is asked again: one failure must
-// not cost a history that is there.
+// Returns what `read` returns, or nullopt and adds a note. Disk errors are retried, so that one
+// failure does not lose an intact history.
 template <typename Read>
 auto attempt(std::vector<std::string>& notes, const Read& read) -> std::optional<decltype(read())> {
   for (int again = 2;; --again) {
@@ -30,32 +30,33 @@ auto attempt(std::vector<std::string>& notes, const Read& read) -> std::optional
   }
 }
 
-// Journal, states and journal_file; event is left at 0.
+// Holds journal, states and journal_file; event stays 0.
 using History = OpenedWorkspace;
 
 std::optional<History> historyIn(const fs::path& folder, const std::string& journal,
                                  const std::vector<StoredState>& states, std::uint64_t event,
-                                 const std::string& check, std::vector<std::string>& notes) {
+                                 const std::string& checksum, std::vector<std::string>& notes) {
   return attempt(notes, [&] {
     History history;
     history.journal_file = insidePath(folder, journal);
     const std::string text = readFile(history.journal_file);
     const JournalLines lines = journalLines(text);
-    const std::string first = states.empty() ? headingOf(lines) : states.front().file;
-    loadNamed(folder, first); // without it no history can be replayed
-    if (const std::string cause = mismatch(lines, first, event, check); !cause.empty())
+    const std::string first = states.empty() ? headerOf(lines) : states.front().file;
+    loadNamed(folder, first); // required for replaying
+    if (const std::string cause = mismatch(lines, first, event, checksum); !cause.empty())
       throw FileError(history.journal_file.string(), 0, cause);
     JournalText parsed = parseJournal(text);
     if (parsed.events.size() < event)
       throw FileError(history.journal_file.string(), parsed.damaged_line, parsed.damage);
     if (parsed.damaged_line != 0) {
       notes.push_back(FileError(history.journal_file.string(), parsed.damaged_line,
-                                parsed.damage + "; it and what follows are left out")
+                                parsed.damage + "; this record and all later ones are left out")
                           .what());
     }
     if (parsed.torn)
-      notes.push_back(history.journal_file.string() + ": the last record was not written whole");
+      notes.push_back(history.journal_file.string() + ": the last record is incomplete");
     history.journal = std::move(parsed.events);
+    history.intent = std::move(parsed.intent);
     history.states = {{0, first}};
     for (std::size_t i = 1; i < states.size(); ++i)
       if (attempt(notes, [&] { return loadNamed(folder, states[i].file); }))
@@ -64,7 +65,7 @@ std::optional<History> historyIn(const fs::path& folder, const std::string& jour
   });
 }
 
-// The latest of the states of a history that is whole; the rest of the journal follows it.
+// Sets the scene from the latest intact state of a history; later journal edits are replayed.
 bool startFromState(const fs::path& folder, History& history) {
   std::vector<StoredState> starts = history.states;
   for (std::size_t i = 0; i < history.journal.size(); ++i)
@@ -78,14 +79,13 @@ bool startFromState(const fs::path& folder, History& history) {
     if (!scene) continue;
     history.scene = std::move(*scene);
     history.event = start.event;
-    history.notes.push_back("the scene was made again from the state after " +
+    history.notes.push_back("the scene was restored from the state after " +
                             std::to_string(start.event) + " edits and the journal");
     return true;
   }
   return false;
 }
 
-// The state of any history that lies farthest on.
 std::optional<Scene> newestState(const fs::path& folder, std::vector<std::string>& notes) {
   std::vector<std::pair<std::uint64_t, std::string>> found;
   std::error_code code;
@@ -117,8 +117,8 @@ OpenedWorkspace fromManifest(const fs::path& folder, const Manifest& manifest) {
     for (const ManifestState& state : manifest.states)
       states.push_back({state.event, state.file.path});
     history = historyIn(folder, manifest.journal->file, states, manifest.event,
-                        manifest.journal->check, notes);
-    if (!history) notes.push_back("the history is left out");
+                        manifest.journal->checksum, notes);
+    if (!history) notes.push_back("the history is lost");
   }
   OpenedWorkspace opened = history ? std::move(*history) : OpenedWorkspace{};
   opened.notes = std::move(notes);
@@ -150,7 +150,7 @@ OpenedWorkspace recoverWorkspace(const fs::path& folder) {
   auto scene = newestState(folder, notes);
   if (!scene)
     throw FileError((folder / kManifestName).string(), 0,
-                    "cannot be read, and no state beside it can; nothing was recovered");
+                    "cannot be read, and neither can any state file; nothing was recovered");
   opened.scene = std::move(*scene);
   opened.notes = std::move(notes);
   return opened;

@@ -3,8 +3,7 @@
 #include "core/error.h"
 #include "geometry/io/mesh_io.h"
 #include "workspace/content_files.h"
-#include "workspace/material_file.h"
-#include "workspace/painted_image.h"
+#include "workspace/paint_files.h"
 #include "workspace/texture_file.h"
 
 namespace patina {
@@ -34,9 +33,9 @@ void requireInUnitSquare(const CornerUvs& uvs, std::size_t triangles, const std:
 std::optional<ManifestLayout> storeLayout(const TextureLayout& layout, const TriangleMesh& mesh,
                                           const std::string& prefix, const fs::path& folder) {
   if (!layout.uvs) return std::nullopt;
-  // What could not be read again must not be stored.
+  // The reader rejects such coordinates, so they must not be stored.
   requireInUnitSquare(*layout.uvs, mesh.triangles.size(), prefix);
-  ManifestLayout stored{layout.made, layout.charts, {}};
+  ManifestLayout stored{layout.generated, layout.charts, {}};
   if (*layout.uvs == mesh.corner_uvs) return stored;
   stored.file = storeValue(folder, prefix, ".ply", layout.uvs, [&](const CornerUvs& uvs) {
     return plyBytes({mesh.positions, mesh.triangles, uvs});
@@ -63,7 +62,7 @@ std::optional<ManifestPaint> storePaint(const SceneObject& object, const fs::pat
 
 TextureLayout loadLayout(const ManifestLayout& stored, const ContentFile& mesh_file,
                          const TriangleMesh& mesh, const fs::path& folder) {
-  TextureLayout layout{nullptr, stored.made, stored.charts};
+  TextureLayout layout{nullptr, stored.generated, stored.charts};
   if (stored.file) {
     layout.uvs = loadValue<CornerUvs>(folder, *stored.file,
                                       [](const std::string& bytes, const std::string& name) {
@@ -83,13 +82,13 @@ std::shared_ptr<const TiledImage> loadImage(const ContentFile& file, int channel
       loadValue<TiledImage>(folder, file, [&](const std::string& bytes, const std::string& name) {
         return parseExr(bytes, channels, name);
       });
-  // One that is in memory already may have been read as something else.
+  // A cached image may have been read with other channels.
   if (image->channels() != channels)
     throw FileError((folder / file.path).string(), 0, "has another number of channels");
   return image;
 }
 
-// Each part is read by itself, so that one that is broken takes no other with it.
+// Reads each part separately, so that a damaged one does not affect the others.
 std::shared_ptr<const ObjectPaint> loadPaint(const ManifestObject& object, const TriangleMesh& mesh,
                                              const fs::path& folder,
                                              std::vector<std::string>* notes) {
@@ -116,7 +115,7 @@ std::shared_ptr<const ObjectPaint> loadPaint(const ManifestObject& object, const
          [&] { paint.material = loadValue<MaterialMap>(folder, *stored.material, parseMaterial); });
   if (stored.textures)
     part("textures", [&] {
-      paint.textures = loadValue<LaidTextures>(folder, *stored.textures, parseLaidTextures);
+      paint.textures = loadValue<TextureMappings>(folder, *stored.textures, parseLaidTextures);
       validate(*paint.textures, mesh.triangles.size());
     });
   return std::make_shared<const ObjectPaint>(std::move(paint));
@@ -141,7 +140,7 @@ ManifestScan storeScan(const SceneScan& scan, const fs::path& folder) {
         storeValue(folder, "scans/" + scan.name + "-" + file.stem().string(),
                    file.extension().string(), text, [](const std::string& bytes) { return bytes; });
   }
-  // A folder that is moved with the workspace's stays found.
+  // A relative path stays valid if both folders are moved together.
   if (!scan.folder.empty())
     stored.folder =
         scan.folder.lexically_relative(fs::absolute(folder).lexically_normal()).string();
@@ -165,7 +164,7 @@ bool isSameMesh(const TriangleMesh& a, const TriangleMesh& b) {
          (a.positions == b.positions && a.triangles == b.triangles && a.corner_uvs == b.corner_uvs);
 }
 
-// The file of an object before this one whose mesh is the same.
+// File of an earlier object with the same mesh.
 std::optional<ContentFile> fileOfEqual(const Scene& scene, const Manifest& manifest) {
   const TriangleMesh& mesh = *scene.objects[manifest.objects.size()].mesh;
   for (std::size_t i = 0; i < manifest.objects.size(); ++i)

@@ -1,4 +1,4 @@
-// Objects and scans of a scene as files of a workspace. Internal to the workspace.
+// Stores objects and scans of a scene as files of a workspace. Internal to the workspace.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,11 @@
 
 namespace patina {
 
-// All that the scene's objects and scans need is on disk when it returns.
+// All files of the scene's objects and scans are on disk when it returns.
 Manifest storeObjects(const Scene& scene, const std::filesystem::path& folder);
 
-// Throws FileError naming the file. With `notes`, paint that cannot be read is left out instead,
-// and so are objects without a mesh and scans, with a line for each.
+// Throws FileError naming the file. With `notes`, unreadable paint, scans and objects without a
+// mesh are left out instead, each with a line.
 Scene loadScene(const Manifest& manifest, const std::filesystem::path& folder,
                 const std::string& name, std::vector<std::string>* notes = nullptr);
 

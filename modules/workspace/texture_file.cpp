@@ -51,7 +51,8 @@ Json toJson(const FourierTexture& texture) {
     break;
   case TextureKind::spectrum:
     json.set("amplitudes", numbersJson(texture.series.a));
-    json.set("seed", std::to_string(texture.seed)); // of 64 bits, which JSON's numbers are not
+    json.set("seed",
+             std::to_string(texture.seed)); // text, because JSON numbers do not hold 64 bits
     break;
   case TextureKind::products: {
     Json list = Json::array();
@@ -103,8 +104,8 @@ void requireFormat(const Json& json, const char* format) {
       !told || !told->isString() || told->asString() != format)
     throw Error(std::string("is not a file of the format '") + format + "'");
   if (const std::int64_t version = json.at("version").asInteger(); version != kTextureVersion)
-    throw Error("version " + std::to_string(version) + " is not known, only " +
-                std::to_string(kTextureVersion));
+    throw Error("version " + std::to_string(version) +
+                " is unknown; supported: " + std::to_string(kTextureVersion));
 }
 
 FourierTexture textureFrom(const Json& json) {
@@ -118,11 +119,11 @@ FourierTexture textureFrom(const Json& json) {
       texture.kind = value;
       known = true;
     }
-  if (!known) throw Error("kind '" + kind.substr(0, 32) + "' is not known");
+  if (!known) throw Error("kind '" + kind.substr(0, 32) + "' is unknown");
   const std::int64_t count = json.at("harmonics").asInteger();
-  if (count < 1 || count > kMostHarmonics)
+  if (count < 1 || count > kMaxHarmonics)
     throw Error("'harmonics' is " + std::to_string(count) + ", not between 1 and " +
-                std::to_string(kMostHarmonics));
+                std::to_string(kMaxHarmonics));
   const auto due = static_cast<std::size_t>(count);
   texture.omega = finite(json, "omega");
   texture.low = finite(json, "low");
@@ -130,6 +131,7 @@ FourierTexture textureFrom(const Json& json) {
   switch (texture.kind) {
   case TextureKind::line:
     texture.series = seriesOf(json, due);
+    texture.series.mean = 0; // A height has none, and none is written.
     break;
   case TextureKind::spectrum:
     texture.series.a = numbersOf(json, "amplitudes", due);
@@ -159,7 +161,7 @@ auto parsed(std::string_view text, const std::string& name, const Make& make) tr
 std::int32_t indexFrom(const Json& json) {
   const std::int64_t index = json.asInteger();
   if (index < 0 || index > std::numeric_limits<std::int32_t>::max())
-    throw Error(std::to_string(index) + " is no face and no texture");
+    throw Error(std::to_string(index) + " is not the number of a face or texture");
   return static_cast<std::int32_t>(index);
 }
 
@@ -181,7 +183,7 @@ void writeTexture(const std::filesystem::path& path, const FourierTexture& textu
   writeFileAtomically(path, textureText(texture));
 }
 
-std::string laidTexturesText(const LaidTextures& laid) {
+std::string laidTexturesText(const TextureMappings& laid) {
   Json library = Json::array(), faces = Json::array();
   for (const auto& [number, texture] : laid.library)
     library.push(
@@ -190,7 +192,7 @@ std::string laidTexturesText(const LaidTextures& laid) {
     Json row = Json::array();
     row.push(std::int64_t{face.face});
     row.push(std::int64_t{face.texture});
-    for (const Vec2& at : face.at)
+    for (const Vec2& at : face.coords)
       for (int k = 0; k < 2; ++k) row.push(at[k]);
     faces.push(row);
   }
@@ -203,14 +205,14 @@ std::string laidTexturesText(const LaidTextures& laid) {
          "\n";
 }
 
-LaidTextures parseLaidTextures(std::string_view text, const std::string& name) {
+TextureMappings parseLaidTextures(std::string_view text, const std::string& name) {
   return parsed(text, name, [](const Json& json) {
     requireFormat(json, kLaidFormat);
-    LaidTextures laid;
+    TextureMappings laid;
     for (const Json& entry : json.at("library").asArray()) {
       const std::int32_t number = indexFrom(entry.at("number"));
-      if (!laid.library.emplace(number, feltTexture(textureFrom(entry.at("texture")))).second)
-        throw Error("texture " + std::to_string(number) + " is there twice");
+      if (!laid.library.emplace(number, hapticTexture(textureFrom(entry.at("texture")))).second)
+        throw Error("texture " + std::to_string(number) + " occurs twice");
     }
     for (const Json& entry : json.at("faces").asArray()) {
       const Json::Array& row = entry.asArray();
@@ -218,7 +220,7 @@ LaidTextures parseLaidTextures(std::string_view text, const std::string& name) {
         throw Error("a face has " + std::to_string(row.size()) + " numbers, not 8");
       TexturedFace face{indexFrom(row[0]), indexFrom(row[1]), {}};
       for (std::size_t k = 0; k < 6; ++k)
-        face.at[k / 2][static_cast<Eigen::Index>(k % 2)] = row[2 + k].asNumber();
+        face.coords[k / 2][static_cast<Eigen::Index>(k % 2)] = row[2 + k].asNumber();
       laid.faces.push_back(face);
     }
     validate(laid, std::numeric_limits<std::int32_t>::max());

@@ -8,8 +8,8 @@
 #include "core/append_file.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/folder_lock.h"
-#include "core/unfinished.h"
+#include "core/file_lock.h"
+#include "core/partial_output.h"
 #include "core/version.h"
 #include "workspace/content_files.h"
 #include "workspace/history_files.h"
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Saving over a workspace that a newer program wrote would lose what this one cannot read.
+// Saving over a workspace of a newer version would lose data that this one cannot read.
 void refuseNewer(const fs::path& folder) {
   const fs::path path = folder / kManifestName;
   if (!fs::exists(path)) return;
@@ -28,7 +28,7 @@ void refuseNewer(const fs::path& folder) {
   try {
     json = parseJson(readFile(path), path.string());
   } catch (const FileError&) {
-    return; // broken: saving repairs it
+    return; // unreadable: saving repairs it
   }
   const Json* version = json.isObject() ? json.find("version") : nullptr;
   if (version && version->isNumber() && version->asNumber() > kWorkspaceVersion) {
@@ -45,7 +45,7 @@ std::optional<Manifest> manifestIfReadable(const fs::path& folder) {
   }
 }
 
-// Held while a workspace is replaced, so that another program does not go on writing its history.
+// Locks the old journal during a replacement, so that no other program appends to it.
 std::unique_ptr<AppendFile> lockOld(const fs::path& folder) {
   const std::optional<Manifest> old = manifestIfReadable(folder);
   std::error_code code;
@@ -63,21 +63,21 @@ void readHistory(const fs::path& folder, const Manifest& manifest, OpenedWorkspa
   const std::string text = readFile(path);
   JournalText journal = parseJournal(text);
   const std::string cause = mismatch(journalLines(text), manifest.states.front().file.path,
-                                     manifest.event, manifest.journal->check);
+                                     manifest.event, manifest.journal->checksum);
   if (journal.damaged_line != 0)
     throw FileError(path.string(), journal.damaged_line, journal.damage + kAdvice);
   if (!cause.empty()) throw FileError(path.string(), 0, cause + kAdvice);
   if (journal.torn)
-    opened.notes.push_back(path.string() +
-                           ": the last record was not written whole and is left out");
+    opened.notes.push_back(path.string() + ": the last record is incomplete and left out");
   for (const JournalEvent& event : journal.events)
     if (const auto* edit = std::get_if<StoredSceneEdit>(&event)) loadNamed(folder, edit->state);
   opened.journal = std::move(journal.events);
+  opened.intent = std::move(journal.intent);
   opened.journal_file = path;
   opened.event = manifest.event;
 }
 
-// states.front() is event 0 and they ascend.
+// The states must ascend and begin with event 0.
 std::vector<ManifestState> manifestStates(const std::vector<StoredState>& states,
                                           const fs::path& folder) {
   std::vector<ManifestState> stored;
@@ -92,8 +92,8 @@ std::vector<ManifestState> manifestStates(const std::vector<StoredState>& states
   return stored;
 }
 
-// The journal that goes on from `first_state`: the one that workspace.json names, or, where that is
-// broken, the newest that fits.
+// Returns the journal that starts from `first_state`: the one named in workspace.json, or the
+// newest matching one if that file is damaged.
 std::string journalOf(const fs::path& folder, const std::string& first_state) {
   const std::optional<Manifest> old = manifestIfReadable(folder);
   std::vector<std::string> names;
@@ -103,29 +103,33 @@ std::string journalOf(const fs::path& folder, const std::string& first_state) {
     names = journalNames(folder);
   for (const std::string& name : names) {
     const std::string text = readFile(insidePath(folder, name));
-    if (headingOf(journalLines(text)) == first_state) return name;
+    if (headerOf(journalLines(text)) == first_state) return name;
   }
   throw FileError(folder.string(), 0,
                   "another program has replaced this workspace; save to another folder");
 }
 
-// The one moment at which the old workspace becomes the new one, and what follows.
+// Replaces the old workspace by the new one in one atomic step, then removes unused files.
 void commit(Manifest manifest, const std::string& journal, std::string_view journal_text,
             const fs::path& folder) {
   const JournalLines lines = journalLines(journal_text);
-  manifest.journal = ManifestJournal{journal, checkOf(lines, manifest.event)};
-  if (manifest.journal->check.empty())
+  manifest.journal = ManifestJournal{journal, checksumOf(lines, manifest.event)};
+  if (manifest.journal->checksum.empty())
     throw std::invalid_argument("saveWorkspace: the journal has fewer events");
-  // Not in a state, whose name holds its hash: the same edits give the same states.
+  // Only here: states are named by their hash, and equal edits must give equal states.
   const Json json = toJson(manifest).set("program", programDescription());
-  writeFileAtomically(folder / kManifestName, json.dump() + "\n");
-  removeUnused(folder, manifest, lines);
+  const bool flushed = writeFileAtomically(folder / kManifestName, json.dump() + "\n");
+  if (!flushed) return; // a power loss may bring the old workspace back, with all its files
+  try {
+    removeUnused(folder, manifest, lines);
+  } catch (const std::exception&) { // such as no memory: it only takes space
+  }
 }
 
-// The folder is there from here on, and says that it is no workspace yet.
 void begin(const fs::path& folder) {
   makeFolder(folder);
-  for (const char* part : kStoredFolders) insidePath(folder, part); // nothing through a link
+  // throws for a link that leads out
+  for (const char* part : kStoredFolders) insidePath(folder, part);
   std::error_code code;
   const auto isMarked = [&] {
     return isWorkspace(folder) || fs::exists(folder / kUnfinishedName, code);
@@ -134,11 +138,11 @@ void begin(const fs::path& folder) {
   try {
     createFile(folder / kUnfinishedName, "");
   } catch (const FileError&) {
-    if (!isMarked()) throw; // else another program has begun it, too, or finished it
+    if (!isMarked()) throw; // otherwise another program has begun or finished it
   }
 }
 
-// Of scenes that were stored before: a history without one of them could not be opened.
+// Checks the scenes that earlier edits need: without one of them the history could not be opened.
 void requireStates(const fs::path& folder, const std::vector<JournalEvent>& events) {
   std::set<std::string> read;
   for (const JournalEvent& event : events) {
@@ -152,49 +156,63 @@ void requireStates(const fs::path& folder, const std::vector<JournalEvent>& even
 
 void replace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
              const std::vector<JournalEvent>& events, const fs::path& folder,
-             std::unique_ptr<JournalWriter>* writer = nullptr) {
+             std::unique_ptr<JournalWriter>* writer, const std::string& intent) {
   Manifest manifest = storeObjects(scene, folder);
   manifest.event = event;
   manifest.states = manifestStates(states, folder);
   requireStates(folder, events);
-  std::string text = journalHeading(states.front().file);
+  std::string text = journalHeader(states.front().file, intent);
   std::uint64_t number = 0;
   for (const JournalEvent& item : events) text += journalLine(++number, item);
-  // Under a name of its own: the old history must not be taken for the new one's.
+  // A new name, because the old history must not be taken for the new one.
   const std::string name = nextJournalName(folder);
-  writeFileAtomically(folder / name, text);
-  if (!writer) return commit(std::move(manifest), name, text, folder);
-  auto next = std::make_unique<JournalWriter>(folder / name, number); // before anyone knows of it
-  try {
-    commit(std::move(manifest), name, text, folder);
-  } catch (...) {
-    // It may have been put in place, and only the folder not flushed.
-    const std::optional<Manifest> now = manifestIfReadable(folder);
-    if (!now)
-      writer->reset();
-    else if (now->journal && now->journal->file == name)
-      *writer = std::move(next);
-    throw;
+  writeFileDurably(folder / name, text);
+  // locked before workspace.json names it
+  auto next = writer ? std::make_unique<JournalWriter>(folder / name, number) : nullptr;
+  commit(std::move(manifest), name, text, folder);
+  if (writer) *writer = std::move(next);
+}
+
+// Reads again if workspace.json has been replaced meanwhile, whose saving removes unused files.
+template <class Read> auto readUnchanged(const fs::path& folder, const Read& read) {
+  constexpr int kTries = 50;
+  const auto now = [&] {
+    try {
+      return readFile(folder / kManifestName);
+    } catch (const FileError&) {
+      return std::string();
+    }
+  };
+  for (int left = kTries;; --left) {
+    const std::string before = now();
+    try {
+      return read();
+    } catch (const FileError&) {
+      if (left == 0 || now() == before) throw;
+    }
   }
-  *writer = std::move(next);
 }
 
 } // namespace
 
 OpenedWorkspace openWorkspace(const fs::path& folder, bool recover) {
   if (recover) return recoverWorkspace(folder);
-  const Manifest manifest = readManifest(folder);
-  OpenedWorkspace opened;
-  opened.scene = loadScene(manifest, folder, (folder / kManifestName).string());
-  if (manifest.journal) readHistory(folder, manifest, opened);
-  return opened;
+  return readUnchanged(folder, [&] {
+    const Manifest manifest = readManifest(folder);
+    OpenedWorkspace opened;
+    opened.scene = loadScene(manifest, folder, (folder / kManifestName).string());
+    if (manifest.journal) readHistory(folder, manifest, opened);
+    return opened;
+  });
 }
 
 OpenedWorkspace openHistory(const fs::path& folder) {
-  const Manifest manifest = readManifest(folder);
-  OpenedWorkspace opened;
-  if (manifest.journal) readHistory(folder, manifest, opened);
-  return opened;
+  return readUnchanged(folder, [&] {
+    const Manifest manifest = readManifest(folder);
+    OpenedWorkspace opened;
+    if (manifest.journal) readHistory(folder, manifest, opened);
+    return opened;
+  });
 }
 
 Scene loadState(const fs::path& folder, const std::string& file) {
@@ -203,7 +221,9 @@ Scene loadState(const fs::path& folder, const std::string& file) {
 }
 
 Scene loadWorkspace(const fs::path& folder) {
-  return loadScene(readManifest(folder), folder, (folder / kManifestName).string());
+  return readUnchanged(folder, [&] {
+    return loadScene(readManifest(folder), folder, (folder / kManifestName).string());
+  });
 }
 
 std::string storeState(const Scene& scene, std::uint64_t event, const fs::path& folder) {
@@ -231,15 +251,15 @@ void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<St
 
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
                    const std::vector<JournalEvent>& journal, const fs::path& folder,
-                   std::unique_ptr<JournalWriter>* writer) {
+                   std::unique_ptr<JournalWriter>* writer, const std::string& intent) {
   validate(scene);
   begin(folder);
   refuseNewer(folder);
   const auto lock = writer && *writer ? nullptr : lockOld(folder);
-  replace(scene, event, states, journal, folder, writer);
+  replace(scene, event, states, journal, folder, writer, intent);
 }
 
-void saveWorkspace(const Scene& scene, const fs::path& folder) {
+void saveWorkspace(const Scene& scene, const fs::path& folder, const std::string& intent) {
   validate(scene);
   NewFolder fresh(folder, kManifestName);
   begin(folder);
@@ -247,14 +267,21 @@ void saveWorkspace(const Scene& scene, const fs::path& folder) {
     const FolderLock alone(folder);
     refuseNewer(folder);
     const auto lock = lockOld(folder);
-    replace(scene, 0, {{0, storeState(scene, 0, folder)}}, {}, folder);
+    replace(scene, 0, {{0, storeState(scene, 0, folder)}}, {}, folder, nullptr, intent);
   }
   fresh.keep();
 }
 
 bool isUnfinishedWorkspace(const fs::path& path) {
   std::error_code code;
-  return !isWorkspace(path) && fs::is_regular_file(path / kUnfinishedName, code);
+  if (isWorkspace(path)) return false;
+  if (fs::is_regular_file(path / kUnfinishedName, code)) return true;
+  std::size_t locks = 0, all = 0; // empty or with locks alone it had only begun
+  for (fs::directory_iterator item(path, code), end; !code && item != end; item.increment(code)) {
+    locks += isFolderLockFile(item->path().filename());
+    ++all;
+  }
+  return !code && locks == all;
 }
 
 bool isWorkspace(const fs::path& path) {

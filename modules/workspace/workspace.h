@@ -1,4 +1,4 @@
-// A scene with its history as a folder that opens again.
+// Stores a scene with its history as a folder.
 #pragma once
 
 #include <cstdint>
@@ -12,66 +12,70 @@
 
 namespace patina {
 
-// A scene stored after so many events of the journal.
 struct StoredState {
   std::uint64_t event = 0;
   std::string file; // states/....json relative to the folder
 };
 
 struct OpenedWorkspace {
-  Scene scene;             // as saved: after `event` events
-  std::uint64_t event = 0; // what the journal holds beyond it is for the reader to apply
+  Scene scene;             // saved after `event` journal records
+  std::uint64_t event = 0; // the caller applies later records
   std::vector<JournalEvent> journal;
-  std::filesystem::path journal_file; // for a JournalWriter; empty where there is no history
-  // Ascending; the first is event 0, the scene before any edit. Empty without a history: it begins
-  // with the next saveWorkspace().
+  std::string intent;                 // the id that the making command was given; may be empty
+  std::filesystem::path journal_file; // for a JournalWriter; empty without a history
+  // Ascending; the first is event 0, the scene before any edit. Empty without a history, which then
+  // begins with the next saveWorkspace().
   std::vector<StoredState> states;
-  std::vector<std::string> notes; // what was found and mended, one line each
+  std::vector<std::string> notes; // one line for each fault found and repaired
 };
 
-// workspace.json (version 3, relative paths, SHA-256 of each file): the scene as saved. Beside it
-// meshes/, paint/, states/ and journal-N.jsonl. Versions 1, without history, and 2 are read too.
-// A torn last record is left out with a note. Throws FileError naming file, line and cause: unknown
-// version, wrong hash, a path that leaves the folder, a journal that is damaged, another
-// workspace's, or shorter than what was saved. With `recover` what can be read is kept and the rest
-// becomes notes: of a damaged journal the records before the damage, if the saved ones are among
-// them; in place of a damaged scene the latest state that is whole, which the journal goes on from,
-// or else the objects whose files are whole; without a readable workspace.json the journal and its
-// states, or else the newest readable state. Nothing on disk is changed.
+// Reads workspace.json (version 4, relative paths, SHA-256 of each file) with meshes/, paint/,
+// states/ and journal-N.jsonl beside it, also versions 1, without history, to 3. An incomplete
+// last record is left out with a note. Throws FileError naming file, line and cause: unknown
+// version, wrong hash, a path that leaves the folder, a journal that is damaged, of another
+// workspace or shorter than the saved one. With `recover` it keeps what is readable and notes the
+// rest: of a damaged journal the records before the damage, if they include the saved ones; for a
+// damaged scene the latest intact state, from which the journal continues, or the objects with
+// intact files; without a readable workspace.json the journal and its states, or the newest
+// readable state. Nothing on disk changes.
+// While another program saves, a file that the first look at workspace.json named may be gone:
+// without `recover`, and by the functions below, all is read again then.
 OpenedWorkspace openWorkspace(const std::filesystem::path& folder, bool recover = false);
-// The same without the scene, whose meshes and pictures are then not read: journal, states, notes.
+// Reads journal, states and notes, without the scene and its meshes and images.
 OpenedWorkspace openHistory(const std::filesystem::path& folder);
-// Scene of a stored state.
 Scene loadState(const std::filesystem::path& folder, const std::string& file);
-// Only the scene as saved.
+// Returns the scene as saved, without its history.
 Scene loadWorkspace(const std::filesystem::path& folder);
 
-// A state's files, for a StoredSceneEdit or as a place to begin a replay from; on disk when it
-// returns. Files are named by their content, so that equal ones are stored once. Returns the path.
+// Stores a state's files for a StoredSceneEdit or as a checkpoint; they are on disk when it
+// returns. Equal files are stored once. Returns the path.
 std::string storeState(const Scene& scene, std::uint64_t event,
                        const std::filesystem::path& folder);
 
-// Atomic: at any moment, whatever fails, the folder holds the old workspace or the new one, whole.
-// The journal is the one in the folder, `event` how much of it the scene includes; `states` those
-// to keep. Files that nothing names any more are removed after that.
+// Atomic: the folder always holds the old or the new workspace, complete, even after a failure. The
+// journal stays the one in the folder, of which the scene includes `event` records; `states` are
+// those to keep. Files that nothing refers to are then removed. The rename of workspace.json is the
+// last step that can fail.
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
                    const std::filesystem::path& folder);
-// A workspace of its own, with no history: state 0 is `scene`. What was in the folder is replaced.
-void saveWorkspace(const Scene& scene, const std::filesystem::path& folder);
+// A new workspace without history: state 0 is `scene`. It replaces the contents of the folder.
+void saveWorkspace(const Scene& scene, const std::filesystem::path& folder,
+                   const std::string& intent = {});
 
-// The same with a journal of its own that holds `journal`, in place of any that is there: what a
-// history is written with into another folder. Its StoredSceneEdits name states that storeState()
-// has put there. One atomic step, too. The caller holds a FolderLock from before it stores the
-// first of them (the other two take it): another program's saving would remove what nothing names
-// yet. `writer`: that of the journal in place, or null; it becomes the one of the new journal, and
-// no other program can have either between. If this throws it is still that of the journal which
-// workspace.json names, and null where that cannot be told.
+// Writes a history into another folder: `journal` replaces any journal there, in one atomic step.
+// Its StoredSceneEdits name states that storeState() has put there. The caller holds a FolderLock
+// since before the first storeState() (the other two functions take it themselves); otherwise
+// another program's save could remove those states. `writer`: writer of the present journal, or
+// null; it becomes that of the new journal, and no other program can lock either in between. After
+// a throw nothing has changed. `intent`: the caller's name of the command, kept in the journal.
 void saveWorkspace(const Scene& scene, std::uint64_t event, const std::vector<StoredState>& states,
                    const std::vector<JournalEvent>& journal, const std::filesystem::path& folder,
-                   std::unique_ptr<JournalWriter>* writer = nullptr);
+                   std::unique_ptr<JournalWriter>* writer = nullptr,
+                   const std::string& intent = {});
 
 bool isWorkspace(const std::filesystem::path& path);
-// What a saver that was killed left of a new one: not to be opened, and free to be replaced.
+// Returns true for the remains of an interrupted first save, which may be replaced: a folder that is
+// empty, has only locks, or is marked as unfinished.
 bool isUnfinishedWorkspace(const std::filesystem::path& path);
 
 } // namespace patina

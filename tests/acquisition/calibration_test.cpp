@@ -7,9 +7,9 @@
 #include "acquisition/calibration/calibrate_camera.h"
 #include "acquisition/calibration/pivot.h"
 #include "acquisition/files/frame_files.h"
+#include "acquisition/loaded/vision_library.h"
 #include "acquisition/simulation/simulated_pivot.h"
 #include "acquisition/tracking/lens.h"
-#include "acquisition/vision_library.h"
 #include "core/decompose.h"
 #include "core/error.h"
 #include "support/oriented_pictures.h"
@@ -50,8 +50,8 @@ TEST(Pivot, IsExactWithoutNoise) {
   EXPECT_LT((fit->point - pivot.point).norm(), 1e-9);
 }
 
-// Errors of the angle must not shorten the arm of a probe that turned little.
-TEST(Pivot, IsNoShorterWhereTheProbeTurnedLittle) {
+// Angle errors must not shorten the arm of a probe that rotated little.
+TEST(Pivot, ArmIsNotShortenedBySmallRotations) {
   for (const double degrees : {9., 14., 34.}) {
     SimulatedPivot pivot;
     pivot.cone = degrees * M_PI / 180;
@@ -73,7 +73,7 @@ TEST(Pivot, IsNoShorterWhereTheProbeTurnedLittle) {
   }
 }
 
-TEST(Pivot, SaysNothingOfAProbeThatHardlyTurned) {
+TEST(Pivot, ReturnsNothingIfTheProbeHardlyRotates) {
   SimulatedPivot pivot;
   pivot.cone = 0.001;
   EXPECT_FALSE(fitPivot(simulatePivot(pivot, 3)));
@@ -83,7 +83,7 @@ TEST(Pivot, SaysNothingOfAProbeThatHardlyTurned) {
   EXPECT_FALSE(fitPivot({}));
 }
 
-TEST(Board, IsReadFromItsWordsOrRefused) {
+TEST(Board, IsParsedFromItsTextOrRejected) {
   const Board chess = parseBoard("chessboard:9x6:25mm");
   EXPECT_EQ(chess.columns, 9);
   EXPECT_EQ(chess.rows, 6);
@@ -122,7 +122,7 @@ TEST(Board, CornersAreFoundWhereTheyAreRendered) {
 }
 
 // Its squares are markers without codes.
-TEST(Board, IsFoundQuicklyAsPreciselyAsAtLeisure) {
+TEST(Board, FastSearchIsAsPreciseAsTheSlowOne) {
   const Board board = parseBoard("chessboard:9x6:25mm");
   std::vector<PrintedMarker> printed;
   for (int y = 0; y < 7; ++y)
@@ -142,7 +142,7 @@ TEST(Board, IsFoundQuicklyAsPreciselyAsAtLeisure) {
     EXPECT_LT((quick->pixel[i] - view->pixel[i]).norm(), 1e-3) << i;
 }
 
-TEST(Calibration, OfTheSharedChessboardIsNoWorseThanOpenCvs) {
+TEST(Calibration, IsNoWorseThanOpenCvOnTheSharedChessboard) {
   const Board board = parseBoard("chessboard:9x6:25mm");
   CameraFit fit;
   std::vector<BoardView> views;
@@ -163,7 +163,7 @@ TEST(Calibration, OfTheSharedChessboardIsNoWorseThanOpenCvs) {
   EXPECT_NEAR(fit.camera.fx, 536, 10);
 }
 
-// Corners that a known camera sees, with noise: its twin on our own data.
+// Corners seen by a known camera, with noise; the counterpart on our own data.
 TEST(Calibration, FindsAKnownCameraWithinItsDeviations) {
   const Camera known = test::smallCamera();
   std::mt19937 random(2);
@@ -200,7 +200,7 @@ TEST(Calibration, FindsAKnownCameraWithinItsDeviations) {
   }
 }
 
-// Views of a board as a camera that goes on, a video or pictures give them.
+// Views of a board from a live camera, a video or pictures.
 class BoardFrames : public FrameSource {
  public:
   BoardFrames(std::vector<GreyFrame> images, double step, bool pictures)
@@ -228,7 +228,7 @@ class Boards : public testing::Test {
   CalibratedCamera calibrated(std::vector<GreyFrame> images, bool pictures = true) const {
     BoardFrames frames(std::move(images), 1 / 30., pictures);
     Progress progress;
-    return calibrateCamera(frames, board, "the board", "views", progress);
+    return fitCameraToFrames(frames, board, "the board", "views", progress);
   }
   std::vector<GreyFrame> views(int count, bool white_first, double blur = 0.6) const {
     const FrameRenderer renderer(camera, test::printedBoard(board, white_first));
@@ -245,7 +245,7 @@ class Boards : public testing::Test {
   Camera camera = test::smallCamera();
 };
 
-TEST_F(Boards, OfBothLayoutsCalibrateAlike) {
+TEST_F(Boards, CalibrateEquallyInBothLayouts) {
   for (const bool white_first : {false, true}) {
     const CalibratedCamera found = calibrated(views(10, white_first));
     std::printf("rms %.3f px, fx %.2f +- %.2f\n", found.fit.rms, found.fit.camera.fx,
@@ -257,7 +257,7 @@ TEST_F(Boards, OfBothLayoutsCalibrateAlike) {
   }
 }
 
-TEST_F(Boards, OfAnotherNumberOfSquaresAreDoubted) {
+TEST_F(Boards, WarnIfTheNumberOfSquaresDiffers) {
   const auto images = views(6, false);
   board = parseBoard("charuco:7x8:25mm:18.75mm:4x4_50");
   const CalibratedCamera found = calibrated(images);
@@ -266,8 +266,8 @@ TEST_F(Boards, OfAnotherNumberOfSquaresAreDoubted) {
   EXPECT_NE(found.doubt.find("the number of its squares"), std::string::npos) << found.doubt;
 }
 
-// A camera that is held upright for some pictures: its pixels are the same ones.
-TEST_F(Boards, InPicturesThatAreTurnedInSeveralWaysCalibrateOneCamera) {
+// Some pictures are rotated because the camera was held upright; the pixels are the same.
+TEST_F(Boards, CalibrateOneCameraFromRotatedPictures) {
   std::vector<GreyFrame> images = views(10, false);
   const CalibratedCamera before = calibrated(images);
   for (const std::size_t i : {1u, 4u, 7u}) images[i] = turned(images[i], i == 4 ? 3 : 6);
@@ -276,20 +276,20 @@ TEST_F(Boards, InPicturesThatAreTurnedInSeveralWaysCalibrateOneCamera) {
   EXPECT_NEAR(found.fit.camera.cy, before.fit.camera.cy, 0.5);
   EXPECT_LT(found.fit.rms, before.fit.rms + 0.05);
   ASSERT_EQ(found.notes.size(), 1u);
-  EXPECT_NE(found.notes[0].find("the camera was held in several ways"), std::string::npos)
+  EXPECT_NE(found.notes[0].find("the camera was turned between pictures"), std::string::npos)
       << found.notes[0];
-  // Half turns leave the size as it is: the fit tells.
+  // Half turns keep the picture size, so only the fit can detect them.
   images = views(10, false);
   for (const std::size_t i : {1u, 4u, 7u}) images[i] = turned(images[i], 3);
   EXPECT_NEAR(calibrated(images).fit.camera.cx, before.fit.camera.cx, 0.5);
-  // Files that were written in several ways are of one camera as they are shown.
+  // Files stored in several orientations belong to one camera as they are displayed.
   images = views(10, false);
   for (const std::size_t i : {1u, 4u, 7u}) images[i].orientation = 3;
   EXPECT_NEAR(calibrated(images).fit.camera.cx, before.fit.camera.cx, 0.5);
 }
 
-// Thirty places, each for ten frames, of which three are blurred.
-TEST_F(Boards, InAVideoAreChosenSharpAndApart) {
+// Thirty poses of ten frames each, of which three are blurred.
+TEST_F(Boards, VideoFramesAreChosenSharpAndApart) {
   const auto sharp = views(30, true), blurred = views(30, true, 3);
   std::vector<GreyFrame> images;
   for (std::size_t i = 0; i < 30; ++i)
@@ -304,7 +304,7 @@ TEST_F(Boards, InAVideoAreChosenSharpAndApart) {
   EXPECT_NEAR(found.fit.camera.fx, camera.fx, 4 * found.fit.deviation[0] + 1);
 }
 
-TEST_F(Boards, ThatHardlyMoveInAVideoTellNoCamera) {
+TEST_F(Boards, GiveNoCameraIfTheyHardlyMoveInAVideo) {
   const std::vector<GreyFrame> images(20, views(1, false)[0]);
   try {
     (void)calibrated(images, false);
@@ -318,12 +318,12 @@ TEST_F(Boards, ThatHardlyMoveInAVideoTellNoCamera) {
   }
 }
 
-TEST(Views, AreChosenApartFirstAndNeverMoreThanAskedFor) {
+TEST(Views, AreChosenFarApartAndNoMoreThanRequested) {
   std::vector<ViewChoice> views;
   for (int i = 0; i < 100; ++i) {
     const Vec2 at(5 * i, 0);
     views.push_back({{at, at + Vec2(100, 0), at + Vec2(100, 80), at + Vec2(0, 80)},
-                     i % 2 ? 0.1 : 1.0,
+                     i % 2 ? 5.0 : 1.0,
                      0.1 * i});
   }
   const auto two = chooseViews(views, 800, 2);

@@ -55,7 +55,7 @@ TEST(CameraFile, ReadsBackEveryLensBitForBit) {
         << cameraText(camera);
 }
 
-TEST(CameraFile, ReadsAsOpenCvWritesYaml) {
+TEST(CameraFile, ReadsYamlFromOpenCv) {
   const Camera camera = parseCamera(
       "%YAML:1.0\n---\ncalibration_time: \"Wed 08 Dec\"\nimage_width: 640\nimage_height: 480\n"
       "flags: 0\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
@@ -99,7 +99,7 @@ TEST(CameraFile, ReadsTheModelThatTheFileNames) {
       isSameCamera(parseCamera("fisheye_model: 0\n" + rosCamera("", kFourText), "cam"), kBrown));
 }
 
-TEST(CameraFile, ReadsEveryProgramsForm) {
+TEST(CameraFile, ReadsTheFormatOfEachProgram) {
   const std::string matrix = "340. 0. 320. 0. 341.\n 240. 0. 0. 1.",
                     four = "-5e-2 1e-2 1e-3\n -2e-3";
   const auto xml = [&](const std::string& more) {
@@ -159,7 +159,7 @@ TEST(CameraFile, ReadsEveryProgramsForm) {
   EXPECT_TRUE(isSameCamera(parseCamera(mac, "cam"), kFisheye));
 }
 
-TEST(CameraFile, RefusesWhatIsNoneWithALine) {
+TEST(CameraFile, RejectsInvalidFilesInOneLine) {
   const std::string good = cameraText({640, 480, 600, 600, 320, 240, {}});
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -181,7 +181,7 @@ TEST(CameraFile, RefusesWhatIsNoneWithALine) {
             "cam:9: has a bracket that never closes");
 }
 
-TEST(CameraFile, ARefusalNamesTheModelAndThoseThatAreKnown) {
+TEST(CameraFile, RejectionNamesTheModelAndTheKnownModels) {
   const std::string known = "; known are plumb_bob, radtan, rational_polynomial, thin_prism, "
                             "tilted, none, equidistant, fisheye, kannala_brandt, kannala_brandt4";
   EXPECT_EQ(cameraRefusal(rosCamera("fov", "0.9")), "cam:8: 'distortion_model' is 'fov'" + known);

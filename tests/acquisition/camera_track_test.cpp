@@ -12,7 +12,7 @@ namespace {
 
 const Vec3 kTip(0, 0, -0.12);
 
-// A slow circle, seen without noise; sigmas say what noise there might be.
+// A slow circle without noise; the sigmas state an assumed noise.
 CameraPose poseAt(double t) {
   CameraPose pose;
   pose.t = t;
@@ -48,7 +48,7 @@ TEST(CameraTrack, FollowsACircle) {
   }
 }
 
-TEST(CameraTrack, SaysWhyItLeavesAPoseOut) {
+TEST(CameraTrack, ReportsWhyAPoseIsRejected) {
   std::vector<CameraPose> poses = circle(4);
   poses[40].position.x() += 1;              // 1 m off
   poses[50].position.y() = std::nan("");    // no number
@@ -68,11 +68,11 @@ TEST(CameraTrack, SaysWhyItLeavesAPoseOut) {
     EXPECT_NEAR((motionAt(track, t).position - tipAt(t)).norm(), 0, 0.1e-3) << t;
 }
 
-TEST(CameraTrack, DoesNotTrustTheFirstPoseNorThatAfterAGap) {
+TEST(CameraTrack, DistrustsTheFirstPoseAndThePoseAfterAGap) {
   std::vector<CameraPose> poses = circle(6);
   poses.front().position.x() += 0.1;
   poses.erase(poses.begin() + 60, poses.begin() + 98); // 1.3 s
-  poses[60].position.z() += 0.05;                       // the first one after
+  poses[60].position.z() += 0.05;                      // the first one after
   const CameraTrack track = trackTip(poses, kTip);
   EXPECT_EQ(track.verdicts.front(), PoseVerdict::outlier);
   EXPECT_EQ(track.verdicts[60], PoseVerdict::outlier);
@@ -80,7 +80,7 @@ TEST(CameraTrack, DoesNotTrustTheFirstPoseNorThatAfterAGap) {
   EXPECT_EQ(track.restarts, 0u);
 }
 
-TEST(CameraTrack, BeginsAnewAfterAJump) {
+TEST(CameraTrack, RestartsAfterAJump) {
   std::vector<CameraPose> poses = circle(6);
   for (std::size_t i = 90; i < poses.size(); ++i) poses[i].position.x() += 0.2;
   const CameraTrack track = trackTip(poses, kTip);
@@ -90,7 +90,7 @@ TEST(CameraTrack, BeginsAnewAfterAJump) {
   EXPECT_NEAR((motionAt(track, 3.2).position - tipAt(3.2) - Vec3(0.2, 0, 0)).norm(), 0, 0.2e-3);
 }
 
-TEST(CameraTrack, MarksAGapAndKnowsHowFarItMayBeOff) {
+TEST(CameraTrack, MarksAGapWithItsUncertainty) {
   std::vector<CameraPose> poses = circle(6);
   poses.erase(poses.begin() + 75, poses.begin() + 135); // 2 s
   const CameraTrack track = trackTip(poses, kTip);
@@ -104,7 +104,7 @@ TEST(CameraTrack, MarksAGapAndKnowsHowFarItMayBeOff) {
   EXPECT_TRUE(motionAt(track, -1).gap) << "before the first one";
 }
 
-TEST(CameraTrack, OrientationsAreTheSameWithEitherSign) {
+TEST(CameraTrack, AcceptsQuaternionsOfEitherSign) {
   std::vector<CameraPose> poses = circle(3), other = poses;
   for (std::size_t i = 0; i < other.size(); i += 3) other[i].orientation.coeffs() *= -1;
   const CameraTrack a = trackTip(poses, kTip), b = trackTip(other, kTip);
@@ -112,7 +112,7 @@ TEST(CameraTrack, OrientationsAreTheSameWithEitherSign) {
     EXPECT_LT(motionAt(a, t).orientation.angularDistance(motionAt(b, t).orientation), 1e-7);
 }
 
-TEST(CameraTrack, WithoutAPoseThereIsNoTrack) {
+TEST(CameraTrack, IsEmptyWithoutPoses) {
   EXPECT_TRUE(trackTip({}, kTip).empty());
   CameraPose broken;
   broken.t = std::nan("");
@@ -123,7 +123,7 @@ TEST(CameraTrack, WithoutAPoseThereIsNoTrack) {
   EXPECT_NEAR((motionAt(lone, 1).position - tipAt(1)).norm(), 0, 1e-12);
 }
 
-// The Kalman list of the extremes: R = 0, Q = 0, and the same measured again and again.
+// Extremes of the Kalman filter: R = 0, Q = 0, and one measurement repeated many times.
 TEST(CameraTrack, TakesExactAndUnmovedPoses) {
   for (const double sigma : {0., 0.2e-3})
     for (const bool moves : {false, true})
@@ -153,7 +153,7 @@ TEST(CameraTrack, TakesExactAndUnmovedPoses) {
       }
 }
 
-// Each step of the ladder is better than the one before; measured 0.53 and 0.46 of the raw camera.
+// Each model is better than the one before; measured 0.53 and 0.46 of the raw camera.
 TEST(CameraTrack, SmoothingBeatsFilteringAndAccelerationVelocity) {
   const SimulatedHand hand = strokes(1);
   const std::vector<CameraPose> poses = simulateCamera(hand, ProbeModel(), {}, 1);

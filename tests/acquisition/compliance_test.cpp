@@ -12,7 +12,7 @@ namespace {
 constexpr double kForceStep = 0.02, kForceNoise = 0.005;
 const double kForceSigma = std::hypot(kForceNoise, kForceStep / std::sqrt(12.));
 
-// Presses of 0.5 s to 3.4 N, 0.1 s apart, at 500 Hz; `alike` correlates the noise of neighbours.
+// Presses of 0.5 s to 3.4 N, 0.1 s apart, at 500 Hz, with noise that correlates between samples.
 std::vector<PressSample> presses(double stiffness, double noise, std::uint32_t seed,
                                  double alike = 0, bool exact = false) {
   std::mt19937 random(seed);
@@ -42,7 +42,7 @@ double plainRegression(const std::vector<PressSample>& samples) {
 }
 
 // A08: a spring without noise.
-TEST(Compliance, OfALinearSpringIsExact) {
+TEST(Compliance, IsExactForALinearSpring) {
   const auto estimate = estimateCompliance(presses(800, 0, 1, 0, true), 0);
   ASSERT_TRUE(estimate);
   EXPECT_NEAR(estimate->compliance, 1 / 800., 1e-12);
@@ -72,7 +72,7 @@ Seeds over(int seeds, double stiffness, double noise, double alike) {
   return result;
 }
 
-TEST(Compliance, IsNotBiasedByNoiseAndKnowsItsDeviation) {
+TEST(Compliance, IsUnbiasedByNoiseAndItsDeviationHolds) {
   for (const double stiffness : {300., 1000., 3000.}) {
     const Seeds found = over(1000, stiffness, 0.3e-3, 0);
     std::printf(
@@ -85,16 +85,16 @@ TEST(Compliance, IsNotBiasedByNoiseAndKnowsItsDeviation) {
   EXPECT_LT(over(100, 3000, 0.3e-3, 0).plain, 0.65 * 3000) << "presses too hard to tell";
 }
 
-// A smoothed path errs alike from sample to sample.
-TEST(Compliance, KnowsItsDeviationWhereNeighboursErrAlike) {
+// Errors of a smoothed path are correlated from sample to sample.
+TEST(Compliance, DeviationHoldsUnderCorrelatedErrors) {
   const Seeds found = over(1000, 1000, 0.3e-3, 0.8);
   EXPECT_NEAR(found.mean / 1000, 1, 0.005);
   EXPECT_NEAR(found.stated / found.deviation, 1, 0.1);
 }
 
-// Each press has an error of its own that grows with the force, as a path's does that leans: from
-// few of them two intervals of three still hold the truth.
-TEST(Compliance, OfFewPressesHasAnHonestDeviation) {
+// Each press has an error of its own that grows with the force, like that of a tilted path. Two of
+// three intervals hold the truth even for few presses.
+TEST(Compliance, DeviationIsWiderForFewPresses) {
   constexpr double kStiffness = 800, kOwn = 0.08; // deviation of a press's slope, relative
   for (const int count : {2, 3, 5, 12}) {
     int held = 0, all = 0;
@@ -122,8 +122,8 @@ TEST(Compliance, OfFewPressesHasAnHonestDeviation) {
   }
 }
 
-// A path that errs for as long as a press, and says by how much.
-TEST(Compliance, OfOnePressIsAsUncertainAsThePath) {
+// Errors of the path last as long as a press and are stated.
+TEST(Compliance, OnePressIsAsUncertainAsThePath) {
   constexpr double kSigma = 0.2e-3;
   for (const double stiffness : {300., 1000., 3000.}) {
     double squares = 0, stated = 0;
@@ -159,20 +159,20 @@ TEST(Compliance, IsAbsentWithoutALoading) {
   for (std::size_t i = 0; i < resting.size(); ++i)
     resting[i] = {static_cast<double>(i) / 500, 0.001, 1.};
   EXPECT_FALSE(estimateCompliance(resting, kForceSigma));
-  // Falls alone: what is let go says nothing of loading.
+  // Unloading alone gives no loading curve to fit.
   for (std::size_t i = 0; i < resting.size(); ++i)
     resting[i].force = 3 - 0.005 * static_cast<double>(i);
   EXPECT_FALSE(estimateCompliance(resting, kForceSigma));
 }
 
-TEST(Compliance, EachPressHasAZeroOfItsOwn) {
+TEST(Compliance, EachPressHasItsOwnZero) {
   std::vector<PressSample> samples = presses(1000, 0, 1, 0, true);
   for (PressSample& sample : samples) sample.displacement += 0.01 * std::floor(sample.t / 0.6);
   EXPECT_NEAR(estimateCompliance(samples, 0)->stiffness, 1000, 1e-6);
 }
 
-// What lies between two presses was no press.
-TEST(Compliance, ALoadingDoesNotGoOnAcrossAPause) {
+// Samples between two presses belong to no press.
+TEST(Compliance, PauseEndsALoading) {
   std::vector<PressSample> samples;
   for (int i = 0; i < 100; ++i) samples.push_back({i / 500., 1e-5 * i, 0.01 * i});
   for (int i = 0; i < 100; ++i) samples.push_back({1 + i / 500., 1 + 1e-5 * i, 1 + 0.01 * i});

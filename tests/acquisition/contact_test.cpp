@@ -31,34 +31,34 @@ TEST(Contact, BeginsAboveOneLimitAndEndsBelowTheOther) {
   for (std::size_t i = 0; i < path.size(); ++i) EXPECT_EQ(path[i].touching, i >= 40 && i < 80) << i;
 }
 
-TEST(Contact, IsNotShakenByABriefSpikeOrLoss) {
+TEST(Contact, IgnoresABriefSpikeOrLoss) {
   std::vector<PathSample> path =
       pathOf(levels({{20, 0}, {2, 1}, {20, 0}, {50, 1}, {3, 0}, {50, 1}, {20, 0}}));
   markContact(path);
-  const std::vector<Stretch> stretches = touchingStretches(path);
+  const std::vector<ContactInterval> stretches = contactIntervals(path);
   ASSERT_EQ(stretches.size(), 1u);
   EXPECT_EQ(stretches[0].begin, 42u);
   EXPECT_EQ(stretches[0].end, 145u);
 }
 
-TEST(Contact, LiftsAndLostSamplesPartTheStretches) {
+TEST(Contact, IsSplitByLiftsAndLostSamples) {
   std::vector<PathSample> path = pathOf(levels({{50, 1}, {30, 0}, {60, 1}}));
   for (std::size_t i = 110; i < path.size(); ++i) path[i].t += 0.5;
   markContact(path);
-  const std::vector<Stretch> stretches = touchingStretches(path);
+  const std::vector<ContactInterval> stretches = contactIntervals(path);
   ASSERT_EQ(stretches.size(), 3u);
   EXPECT_EQ(stretches[1].begin, 80u);
   EXPECT_EQ(stretches[1].end, 110u);
   EXPECT_EQ(stretches[2].end, 140u);
 }
 
-TEST(Contact, NothingAndNonsense) {
+TEST(Contact, HandlesEmptyAndNonFinitePaths) {
   std::vector<PathSample> path;
   markContact(path);
-  EXPECT_TRUE(touchingStretches(path).empty());
+  EXPECT_TRUE(contactIntervals(path).empty());
   path = pathOf({std::nan(""), std::nan(""), std::nan("")});
   markContact(path);
-  EXPECT_TRUE(touchingStretches(path).empty());
+  EXPECT_TRUE(contactIntervals(path).empty());
   EXPECT_THROW(markContact(path, {0.05, 0.1, 0.01}), std::invalid_argument);
 }
 

@@ -1,5 +1,4 @@
-// Texture of scans whose true heights are known, where the tip was slow as where it was quick.
-#include "acquisition/texture/drawn_heights.h"
+// Textures of scans with known true heights; slow parts must be as accurate as fast ones.
 
 #include <gtest/gtest.h>
 
@@ -28,12 +27,12 @@ TEST(CourseOf, PassesEachWaveByTheClosedForm) {
     for (int i = 0; i < kCount; ++i)
       wave.push_back(std::cos(2 * std::numbers::pi * (i - kCount / 2) * kStep / (ratio * kLength)));
     const std::vector<double> course =
-        courseOf(wave, std::vector<double>(kCount, 1.), kStep, kLength);
+        wavinessOf(wave, std::vector<double>(kCount, 1.), kStep, kLength);
     EXPECT_NEAR(course[kCount / 2], 1 / (1 + std::pow(ratio, -6)), 0.02) << ratio;
   }
 }
 
-TEST(CourseOf, GoesPastWhatIsNotKnownAndHasNoEnds) {
+TEST(CourseOf, BridgesUnknownHeightsAndHasNoEndEffects) {
   constexpr double kStep = 1e-4;
   std::vector<double> heights, weights;
   for (int i = 0; i < 600; ++i) {
@@ -42,19 +41,19 @@ TEST(CourseOf, GoesPastWhatIsNotKnownAndHasNoEnds) {
     heights.push_back(known ? 1e-3 + 0.02 * x - 3 * x * x : 0.1 * (i % 7));
     weights.push_back(known);
   }
-  const std::vector<double> course = courseOf(heights, weights, kStep, 0.012);
+  const std::vector<double> course = wavinessOf(heights, weights, kStep, 0.012);
   for (int i = 0; i < 600; ++i) {
     const double x = kStep * i;
     EXPECT_NEAR(course[static_cast<std::size_t>(i)], 1e-3 + 0.02 * x - 3 * x * x, 1e-9) << i;
   }
 }
 
-TEST(WeightsBySpeed, AreNoneWhereATipStands) {
-  const std::vector<double> weights = weightsBySpeed({0, 0.015, 0.06, 0.06, 0.06});
+TEST(WeightsBySpeed, AreZeroAtRest) {
+  const std::vector<double> weights = speedWeights({0, 0.015, 0.06, 0.06, 0.06});
   EXPECT_EQ(weights[0], 0);
   EXPECT_NEAR(weights[1], 0.5, 1e-12);
   EXPECT_NEAR(weights[2], 64. / 65, 1e-12);
-  EXPECT_THROW(weightsBySpeed({0, 0, 0, 0.05}), Error);
+  EXPECT_THROW(speedWeights({0, 0, 0, 0.05}), Error);
 }
 
 struct Part {
@@ -62,7 +61,7 @@ struct Part {
   double ratio() const { return std::sqrt(wrong / truth); }
 };
 
-// Of each stretch of contact: 4 mm at either end, where the tip is slow in between, the rest.
+// Parts of each stroke: 4 mm at either end, the slow samples in between, and the rest.
 struct Parts {
   Part begin, end, slow, quick;
   double highest = 0; // over the truth's rms, at the ends
@@ -70,7 +69,7 @@ struct Parts {
 
 void judge(const TriangleMesh& mesh, std::uint32_t seed, Parts& parts) {
   constexpr double kRms = 60e-6, kCutoff = 8e-3, kEnd = 4e-3, kSlow = 0.02;
-  SimulatedHand hand = strokesOver(mesh, seed, 20, 0.05);
+  SimulatedHand hand = scanPathsOver(mesh, seed, 20, 0.05);
   hand.relief = [shape = hand.relief, rough = roughSurface(seed, kRms)](const Vec2& place) {
     return shape(place) + rough(place);
   };
@@ -91,7 +90,7 @@ void judge(const TriangleMesh& mesh, std::uint32_t seed, Parts& parts) {
     std::vector<ProfilePoint> points;
     for (; last < heights.size() && heights[last].stretch == heights[first].stretch; ++last)
       points.push_back(heights[last].point);
-    const double length = points.back().along;
+    const double length = points.back().arc_length;
     if (length < 0.03) continue;
     FitOptions1d options;
     options.harmonics = static_cast<int>(length / 0.6e-3); // the roughness' shortest wave, and more
@@ -99,11 +98,12 @@ void judge(const TriangleMesh& mesh, std::uint32_t seed, Parts& parts) {
     const FittedTexture fitted = fitTexture(points, options);
     double before = -1;
     for (std::size_t i = first; i < last; ++i) {
-      const double along = heights[i].point.along;
-      if (along - before < 0.1e-3) continue; // each place once
+      const double along = heights[i].point.arc_length;
+      if (along - before < 0.1e-3) continue; // each position once
       before = along;
       const HandState state = handAt(hand, heights[i].t);
-      const double truth = target.miss(Vec3(state.tip.x(), state.tip.y(), state.surface)).distance;
+      const double truth =
+          target.residual(Vec3(state.tip.x(), state.tip.y(), state.surface)).distance;
       const double found = height(fitted.texture, along);
       const bool ends = along < kEnd || along > length - kEnd;
       Part& part = along < kEnd                      ? parts.begin
@@ -117,11 +117,11 @@ void judge(const TriangleMesh& mesh, std::uint32_t seed, Parts& parts) {
   }
 }
 
-// Waves that a landing, a turn or a lift-off left would be many times the texture.
-TEST(ScanTexture, IsAsTrueWhereTheTipLandsTurnsAndLiftsAsBetween) {
+// Errors from a landing, a turn or a lift-off would be many times the texture.
+TEST(ScanTexture, IsAsAccurateAtLandingTurningAndLiftingAsBetween) {
   TriangleMesh toy = dinosaur();
   for (Vec3& p : toy.positions) p *= 2;
-  const Pose side(turnFromTo(-Vec3::UnitY(), Vec3::UnitZ()));
+  const Pose side(rotationFromTo(-Vec3::UnitY(), Vec3::UnitZ()));
   toy = transformed(toy, Eigen::Affine3d(side.matrix()));
   for (const TriangleMesh& mesh : {toy, icosphere(0.04, 60)}) {
     Parts parts;

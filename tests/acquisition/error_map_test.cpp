@@ -1,4 +1,4 @@
-// The map of what a registered path is off, against sums over all samples.
+// Tests the map of a registered path's errors against sums over all samples.
 #include <cmath>
 #include <random>
 
@@ -15,14 +15,14 @@ Registration scattered(const TriangleMesh& mesh, int count, unsigned seed) {
   std::uniform_real_distribution<double> unit(0, 1);
   Registration made;
   for (int i = 0; i < count; ++i) {
-    Miss miss;
+    SurfaceResidual miss;
     miss.foot.face = static_cast<std::int32_t>(unit(random) * mesh.triangles.size());
     const double a = unit(random), b = (1 - a) * unit(random);
     miss.foot.barycentric = Vec3(a, b, 1 - a - b);
     miss.at = position(mesh, miss.foot);
     miss.distance = 2e-3 * (unit(random) - 0.5);
-    made.misses.push_back(miss);
-    made.counts.push_back(unit(random) < 0.8);
+    made.residuals.push_back(miss);
+    made.inliers.push_back(unit(random) < 0.8);
   }
   return made;
 }
@@ -36,10 +36,10 @@ TEST(ErrorMap, IsTheWeightedMeanOfAllSamplesInReach) {
   int with = 0;
   for (std::size_t v = 0; v < map.size(); ++v) {
     double sum = 0, weights = 0;
-    for (std::size_t i = 0; i < found.misses.size(); ++i) { // a convex body: one side is near
-      const double d = (found.misses[i].at - mesh.positions[v]).norm() / reach;
-      const double weight = found.counts[i] && d < 1 ? std::pow(1 - d * d, 2) : 0;
-      sum += weight * std::abs(found.misses[i].distance);
+    for (std::size_t i = 0; i < found.residuals.size(); ++i) { // a convex body: one side is near
+      const double d = (found.residuals[i].at - mesh.positions[v]).norm() / reach;
+      const double weight = found.inliers[i] && d < 1 ? std::pow(1 - d * d, 2) : 0;
+      sum += weight * std::abs(found.residuals[i].distance);
       weights += weight;
     }
     if (weights == 0) {
@@ -53,7 +53,7 @@ TEST(ErrorMap, IsTheWeightedMeanOfAllSamplesInReach) {
   EXPECT_LT(with, static_cast<int>(map.size()));
 }
 
-TEST(ErrorMap, SamplesOnOneSideOfAThinPlateSayNothingOfTheOther) {
+TEST(ErrorMap, IgnoresSamplesOnTheOtherSideOfAThinWall) {
   TriangleMesh mesh = sheet(0.1, 0.1, 20);
   const auto upper = mesh.positions.size(), faces = mesh.triangles.size();
   for (std::size_t v = 0; v < upper; ++v)
@@ -64,12 +64,12 @@ TEST(ErrorMap, SamplesOnOneSideOfAThinPlateSayNothingOfTheOther) {
     mesh.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
   }
   Registration found;
-  Miss miss;
+  SurfaceResidual miss;
   miss.foot = {static_cast<std::int32_t>(faces / 2), Vec3(0.3, 0.3, 0.4)};
   miss.at = position(mesh, miss.foot);
   miss.distance = -5e-4;
-  found.misses = {miss};
-  found.counts = {true};
+  found.residuals = {miss};
+  found.inliers = {true};
   const std::vector<float> map = errorMapOf(mesh, found, 0.02);
   int above = 0;
   for (std::size_t v = 0; v < map.size(); ++v) {

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "geometry/mesh/shapes.h"
-#include "scene/fourier/texture_patches.h"
+#include "scene/paint/relief_surface.h"
 
 namespace patina {
 namespace {
@@ -51,7 +51,7 @@ double heightOf(double x, double y) {
   return kHeight * (twoProducts(x, y) - 0.5);
 }
 
-TEST(FitPlane, APictureOfWavesIsTheirSum) {
+TEST(FitPlane, ReproducesAPictureOfWaves) {
   const Picture picture = pictureOf(64, twoProducts);
   PlaneFitOptions options;
   options.harmonics = 10;
@@ -62,16 +62,16 @@ TEST(FitPlane, APictureOfWavesIsTheirSum) {
   EXPECT_LT(plane.residual, 1e-10);
   EXPECT_NEAR(plane.rms, kHeight * std::sqrt(0.04 / 4 + 0.01 / 4 * 1.25), 1e-9);
 
-  options.rank = 0; // as few as serve
+  options.rank = 0; // the smallest sufficient rank
   const FittedPlane products = fitted(picture, options);
   EXPECT_EQ(products.rank, 2);
-  EXPECT_LT(products.lacking, 1e-6);
+  EXPECT_LT(products.relative_error, 1e-6);
   EXPECT_LT(worst(products.texture, heightOf), 1e-9);
   EXPECT_NEAR(products.texture.low, plane.texture.low, 1e-9);
 }
 
-// Of one product less nothing is nearer (Eckart and Young): here the other wave is left out.
-TEST(FitPlane, TheBestOfALowerRankIsTheStrongerProduct) {
+// The best approximation of lower rank (Eckart & Young 1936) omits the other wave here.
+TEST(FitPlane, LowerRankKeepsTheStrongerProduct) {
   PlaneFitOptions options;
   options.harmonics = 10;
   options.rank = 1;
@@ -82,17 +82,17 @@ TEST(FitPlane, TheBestOfALowerRankIsTheStrongerProduct) {
   };
   EXPECT_LT(worst(one.texture, first), 1e-9);
   const double left = 0.01 / 4 * 1.25, all = 0.04 / 4 + left;
-  EXPECT_NEAR(one.lacking, std::sqrt(left / all), 1e-6);
+  EXPECT_NEAR(one.relative_error, std::sqrt(left / all), 1e-6);
   EXPECT_NEAR(one.residual, kHeight * std::sqrt(left), 1e-9);
 }
 
-TEST(FitPlane, WhatDoesNotRepeatItselfIsBlended) {
+TEST(FitPlane, BlendsNonPeriodicPictures) {
   const auto ramp = [](double x, double y) { return 0.3 + 0.3 * x + 0.2 * y * y; };
   PlaneFitOptions options;
   options.harmonics = 100;
   options.blend = 0.3;
   const FittedPlane plane = fitted(pictureOf(256, ramp), options);
-  // No step at the seam, as a picture that is not blended has.
+  // The seam has no step, unlike that of a picture without blending.
   const double before = height(plane.texture, -1e-6, 0.01),
                after = height(plane.texture, 1e-6, 0.01);
   EXPECT_NEAR(before, after, 1e-7);
@@ -101,7 +101,7 @@ TEST(FitPlane, WhatDoesNotRepeatItselfIsBlended) {
               kHeight * 0.03, 1e-6);
 }
 
-TEST(FitPlane, OddPicturesAreToldFromOthers) {
+TEST(FitPlane, RejectsUnsuitablePictures) {
   const auto refuses = [](const Picture& picture, const char* part) {
     try {
       fitted(picture, {});
@@ -118,14 +118,14 @@ TEST(FitPlane, OddPicturesAreToldFromOthers) {
   refuses(odd, "no number");
 }
 
-// A17: the same file on a plate and on a body; each reads the picture's heights at its coordinates.
-TEST(FitPlane, LiesOnOneMeshAsOnAnother) {
+// A17: one file on a sheet and on a body gives the picture's heights at the coordinates of each.
+TEST(FitPlane, HasTheSameHeightsOnAnyMesh) {
   PlaneFitOptions options;
   options.harmonics = 10;
   for (const bool full : {true, false}) {
     options.rank = full ? std::nullopt : std::optional(0);
-    LaidTextures laid;
-    laid.library[4] = feltTexture(fitted(pictureOf(64, twoProducts), options).texture);
+    TextureMappings laid;
+    laid.library[4] = hapticTexture(fitted(pictureOf(64, twoProducts), options).texture);
     for (const TriangleMesh& mesh : {sheet(0.1, 0.1, 12), icosphere(0.03, 12)}) {
       laid.faces.clear();
       for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -133,14 +133,14 @@ TEST(FitPlane, LiesOnOneMeshAsOnAnother) {
         face.face = static_cast<std::int32_t>(f);
         face.texture = 4;
         for (int c = 0; c < 3; ++c)
-          face.at[static_cast<std::size_t>(c)] = mesh.corner(f, c).head<2>();
+          face.coords[static_cast<std::size_t>(c)] = mesh.corner(f, c).head<2>();
         laid.faces.push_back(face);
       }
       const TexturePatches patches(mesh, laid);
       for (std::size_t f = 0; f < mesh.triangles.size(); f += 7) {
         const Vec3 p = 0.5 * mesh.corner(f, 0) + 0.3 * mesh.corner(f, 1) + 0.2 * mesh.corner(f, 2);
         const PatchAt at = patches.at(static_cast<std::int32_t>(f), p);
-        if (at.texture.share < 1) continue; // at the sheet's rim
+        if (at.texture.weight < 1) continue; // at the boundary of the sheet
         EXPECT_NEAR(at.height, heightOf(p.x() / kLength, p.y() / kLength), 1e-9);
       }
     }

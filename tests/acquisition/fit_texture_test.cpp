@@ -38,7 +38,7 @@ FourierTexture lineOf(const FourierSeries& series, double length) {
   texture.omega = 2 * kPi / length;
   texture.series = series;
   texture.series.mean = 0;
-  texture.low = leastHeight(texture);
+  texture.low = minHeight(texture);
   return texture;
 }
 
@@ -63,7 +63,7 @@ TEST(Seamless, EndsMeetWithOneSlopeAndNothingElseIsTouched) {
   EXPECT_THROW(seamless({0, 1, 2, 3, 4}, 4), Error);
 }
 
-// T-A18: a rough profile's slopes of one step are chance, which a long zone would make hills of.
+// T-A18: slopes over one step of a rough profile are random; a long zone would create hills.
 TEST(Seamless, NeverLeavesTheRangeOfTheProfile) {
   for (unsigned seed = 0; seed < 20; ++seed)
     for (const std::size_t blend : {8u, 40u, 400u, 800u}) {
@@ -170,17 +170,17 @@ TEST(FitTexture, WavesLongerThanTheCutoffAreLeftOut) {
       lineOf({0, {5e-4, 0, 0, 1e-5, 2e-5, 0}, {0, 0, 1e-4, 0, 0, 3e-6}}, 0.04);
   std::vector<ProfilePoint> points;
   for (int i = 0; i <= 800; ++i) points.push_back({5e-5 * i, height(truth, 5e-5 * i), 0});
-  // The fourth is as long as the cutoff, and stays.
+  // The fourth wave is as long as the cutoff and stays.
   const FittedTexture fitted = fitTexture(points, {6, 0.01, {}, 0.01});
   for (std::size_t j = 0; j < 6; ++j) {
     EXPECT_NEAR(fitted.texture.series.a[j], j < 3 ? 0 : truth.series.a[j], 1e-8) << j;
     EXPECT_NEAR(fitted.texture.series.b[j], j < 3 ? 0 : truth.series.b[j], 1e-8) << j;
   }
-  EXPECT_NEAR(fitted.left_out, std::sqrt(0.5 * (25e-8 + 1e-8)), 1e-7);
+  EXPECT_NEAR(fitted.removed_rms, std::sqrt(0.5 * (25e-8 + 1e-8)), 1e-7);
   EXPECT_THROW(fitTexture(points, {6, 0.01, {}, 1e-3}), Error);
 }
 
-TEST(FitTexture, OfUnevenNoisyPointsIsTheTextureBeneath) {
+TEST(FitTexture, RecoversTheTextureFromUnevenNoisyPoints) {
   const FourierTexture truth =
       lineOf({0, {2e-5, 0, 0, 1e-5, 0, 0, 0, 3e-6}, {0, 1e-5, 0, 0, 0, 5e-6, 0, 0}}, 0.04);
   std::mt19937 random(8);
@@ -201,7 +201,7 @@ TEST(FitTexture, OfUnevenNoisyPointsIsTheTextureBeneath) {
   EXPECT_NEAR(fitted.tilt, 0.01, 1e-3);
 }
 
-// The truncation that is left is what the harmonics beyond hold.
+// The remaining truncation error is the power of the higher harmonics.
 TEST(FitTexture, ErrorFallsAsHarmonicsAreAdded) {
   const std::vector<double> heights = milledProfile(3, 0.05, 2e-5);
   double before = 1e9, first = 0;
@@ -214,9 +214,9 @@ TEST(FitTexture, ErrorFallsAsHarmonicsAreAdded) {
   EXPECT_LT(before, 0.05 * first);
 }
 
-// Ten times the zone would add a bump of the rms and more where the cubic turns to the slope of the
-// beginning.
-TEST(FitTexture, ByDefaultBlendsLittle) {
+// A ten times longer zone would add a bump of more than the rms where the cubic meets the slope of
+// the beginning.
+TEST(FitTexture, BlendsLittleByDefault) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const std::vector<ProfilePoint> points = pointsOf(milledProfile(seed, 28e-3, 5e-6), 5e-6);
     const FittedTexture fitted = fitTexture(points, {});
@@ -225,7 +225,7 @@ TEST(FitTexture, ByDefaultBlendsLittle) {
   }
 }
 
-TEST(FitTexture, OfTheSharedMilledSurfaceHasTheResidueOfItsSpectrum) {
+TEST(FitTexture, ResidualMatchesTheSpectrumOfTheSharedMilledSurface) {
   const std::filesystem::path path = test::sharedData("profiles/npl_mill.xml");
   PATINA_SKIP_WITHOUT(path);
   std::ifstream file(path);
@@ -243,20 +243,20 @@ TEST(FitTexture, OfTheSharedMilledSurfaceHasTheResidueOfItsSpectrum) {
 }
 
 // T-A21a
-TEST(CrossCorrelation, OfTwoCosinesIsTheirProduct) {
+TEST(CrossCorrelation, IsTheProductOfTwoCosines) {
   const FourierTexture wave = lineOf({0, {0, 1e-4, 0}, {0, 0, 0}}, 0.02);
   const FourierTexture crossed = crossCorrelation(wave, wave);
   ASSERT_EQ(crossed.products.size(), 1u); // rank one
   for (int i = 0; i < 100; ++i) {
     const double x = 1.7e-4 * i, y = 3.1e-4 * i - 0.01, w = 2 * 2 * kPi / 0.02;
-    // As high as the one wave: 1e-4 / sqrt(2) rms in place of a product's half.
+    // The height is that of the single wave: 1e-4 / sqrt(2) rms instead of half for a product.
     EXPECT_NEAR(height(crossed, x, y), 1e-4 * std::sqrt(2) * std::cos(w * x) * std::cos(w * y),
                 1e-18);
   }
 }
 
 // T-A21b, against the correlation summed over the samples.
-TEST(CrossCorrelation, IsThatOfTheSamplesWithTheHeightOfTheLine) {
+TEST(CrossCorrelation, MatchesTheSamplesAtTheHeightOfTheLine) {
   const std::size_t m = 65;
   const std::vector<double> p = noise(m, 5), q = noise(m, 6);
   const double length = 0.0065;
@@ -283,7 +283,7 @@ TEST(CrossCorrelation, IsThatOfTheSamplesWithTheHeightOfTheLine) {
   EXPECT_THROW(crossCorrelation(across, lineOf(seriesOf(q, 32), 2 * length)), Error);
 }
 
-TEST(SpectrumOf, KeepsAmplitudesWhateverTheSeed) {
+TEST(SpectrumOf, KeepsAmplitudesForAnySeed) {
   const FourierTexture line = lineOf(seriesOf(noise(101, 2), 50), 0.01);
   for (const std::uint64_t seed : {1u, 2u}) {
     const FourierTexture spectrum = spectrumOf(line, seed);
@@ -293,7 +293,7 @@ TEST(SpectrumOf, KeepsAmplitudesWhateverTheSeed) {
   EXPECT_NE(height(spectrumOf(line, 1), 1e-3), height(spectrumOf(line, 2), 1e-3));
 }
 
-TEST(FitTexture, SaysWhatIsWrong) {
+TEST(FitTexture, NamesTheFault) {
   const auto failure = [](std::vector<ProfilePoint> points, const FitOptions1d& options = {}) {
     try {
       fitTexture(points, options);

@@ -1,4 +1,4 @@
-#include "acquisition/calibration/force_fit.h"
+#include "acquisition/calibration/probe_calibration.h"
 
 #include <gtest/gtest.h>
 
@@ -40,17 +40,17 @@ TEST(ForceFit, StatesItsDeviations) {
   }
   std::printf("squared errors over variances: zero %.2f, gain %.2f; %.3f of 20 rejected\n", zero,
               gain, rejected);
-  // Of 18 degrees of freedom they are 1.125 on average; what is rejected adds to it.
+  // The mean is 1.125 for 18 degrees of freedom; rejected samples add to it.
   EXPECT_NEAR(zero, 1.15, 0.2);
   EXPECT_NEAR(gain, 1.15, 0.2);
   EXPECT_LT(rejected, 0.5);
 }
 
-TEST(ForceFit, RejectsAWeightThatWasWrong) {
+TEST(ForceFit, RejectsAWrongWeight) {
   std::mt19937 random(3);
   for (std::size_t bad = 0; bad < 5; ++bad) {
     auto readings = weighed(random, 1, 0.002);
-    readings[bad].shown += 0.7;
+    readings[bad].reading += 0.7;
     const auto fit = fitForce(readings);
     ASSERT_TRUE(fit);
     EXPECT_EQ(fit->rejected, std::vector<std::size_t>{bad});
@@ -59,7 +59,7 @@ TEST(ForceFit, RejectsAWeightThatWasWrong) {
   }
 }
 
-TEST(ForceFit, SaysNothingOfTooFewOrUnrelatedReadings) {
+TEST(ForceFit, ReturnsNothingForTooFewOrUnrelatedReadings) {
   EXPECT_FALSE(fitForce({{0, 0}, {1, 1}, {2, 2}}));
   EXPECT_FALSE(fitForce({{1, 0.5}, {1, 0.6}, {2, 1}, {2, 1.1}}));
   EXPECT_FALSE(fitForce({{0, 0.3}, {1, 0.1}, {2, 0.4}, {3, 0.2}, {4, 0.3}}));

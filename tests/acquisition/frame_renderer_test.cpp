@@ -1,5 +1,5 @@
-// What tests and studies of tracking stand on: the renderer against OpenCV's camera.
-#include "acquisition/simulation/frame_renderer.h"
+// Tests the renderer of the tracking tests and studies against OpenCV's camera.
+#include "acquisition/simulation/simulated_frames.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 const Camera kCameras[] = {test::smallCamera(), test::largeCamera(), test::wideCamera(),
                            test::rationalCamera(), test::fisheyeCamera()};
 
-// The middle of the dark of a tile without white bits, against the middle of its points.
+// The centroid of the dark pixels of a tile without white bits, against the mean of its points.
 TEST(FrameRenderer, PutsTilesWhereOpenCvProjectsThem) {
   for (const Camera& camera : kCameras)
     for (const Vec2& aside : {Vec2(0, 0), Vec2(-0.7, 0.6), Vec2(0.75, 0.7), Vec2(0.1, -0.8)}) {
@@ -38,7 +38,7 @@ TEST(FrameRenderer, PutsTilesWhereOpenCvProjectsThem) {
           dark += d;
           middle += d * Vec2(x, y);
         }
-      // Of small cells of the tile, each with the area that it has in the picture.
+      // The sum is over small cells of the tile, each weighted by its area in the picture.
       constexpr int kCells = 16;
       const auto node = [&](int i, int j) {
         return test::projectedByOpenCv(camera,
@@ -66,7 +66,7 @@ TEST(FrameRenderer, RefusesALensThatFolds) {
   EXPECT_THROW(FrameRenderer(camera, {}), std::invalid_argument);
 }
 
-TEST(FrameRenderer, BlursWhatMovesDuringTheExposure) {
+TEST(FrameRenderer, BlursMotionDuringTheExposure) {
   const test::RenderedRig rig(test::smallCamera(), "4x4_50");
   std::mt19937 random(1);
   const Pose pose = test::somePose(random);

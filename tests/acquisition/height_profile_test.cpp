@@ -7,7 +7,6 @@
 #include <random>
 #include <sstream>
 
-#include "acquisition/profile/rough_process.h"
 #include "acquisition/simulation/simulated_surface.h"
 #include "core/decompose.h"
 #include "support/constants.h"
@@ -21,26 +20,26 @@ using test::kPi;
 constexpr double kStep = 0.015 * 9.80665, kNoise = 0.02; // [m/s^2]
 constexpr double kVariance = kNoise * kNoise + kStep * kStep / 12;
 
-TEST(RoughProcess, StaysAsRoughAsItIsOverAnyDistance) {
+TEST(RoughProcess, KeepsItsCovarianceOverAnyDistance) {
   const RoughSquare P = roughCovariance();
   for (const double distance : {1e-6, 1e-3, 0.1, 0.99, 1.01, 5., 50.}) {
-    const RoughStep step = roughStep(distance);
+    const MaternStep step = maternTransition(distance);
     EXPECT_TRUE((step.A * P * step.A.transpose() + step.Q).isApprox(P, 1e-9)) << distance;
-    // Two halves are the whole.
-    const RoughStep half = roughStep(distance / 2);
+    // Two half steps equal the whole step.
+    const MaternStep half = maternTransition(distance / 2);
     EXPECT_TRUE((half.A * half.A).isApprox(step.A, 1e-9)) << distance;
     EXPECT_TRUE((half.A * half.Q * half.A.transpose() + half.Q).isApprox(step.Q, 1e-6)) << distance;
   }
-  // Heights a distance apart: the covariance of Matern 7/2.
+  // Heights at a distance have the covariance of Matern 7/2.
   const double u = 1.7;
-  EXPECT_NEAR((roughStep(u).A * P)(0, 0), std::exp(-u) * (1 + u + 0.4 * u * u + u * u * u / 15),
-              1e-12);
+  EXPECT_NEAR((maternTransition(u).A * P)(0, 0),
+              std::exp(-u) * (1 + u + 0.4 * u * u + u * u * u / 15), 1e-12);
 }
 
-TEST(RoughProcess, TurnsBackOnItself) {
-  const RoughStep back = roughTurn(-1), aside = roughTurn(0);
+TEST(RoughProcess, ReversesExactlyAndForgetsSlopesAtARightAngle) {
+  const MaternStep back = reversalMatrix(-1), aside = reversalMatrix(0);
   EXPECT_LT(back.Q.norm(), 1e-15);
-  EXPECT_EQ(back.A.diagonal(), RoughState(1, -1, 1, -1));
+  EXPECT_EQ(back.A.diagonal(), MaternState(1, -1, 1, -1));
   EXPECT_EQ(aside.A(0, 0), 1);
   EXPECT_NEAR(aside.Q(1, 1), roughCovariance()(1, 1), 1e-15);
 }
@@ -52,7 +51,7 @@ struct Drawn {
   std::vector<double> heights;
 };
 
-// Over `height` by s(t) for `seconds`, read as the sensor reads; derivatives of s by differences.
+// Samples `height` along s(t) for `seconds` with sensor rounding; derivatives of s are differences.
 template <class Height, class Place>
 Drawn drawnOver(const Height& height, const Place& place, double seconds, std::uint32_t seed,
                 bool exact_sensor = false) {
@@ -68,9 +67,9 @@ Drawn drawnOver(const Height& height, const Place& place, double seconds, std::u
     TracedSample sample;
     sample.t = t;
     along += std::abs(place(t) - last);
-    sample.along = along;
+    sample.arc_length = along;
     sample.speed = std::abs(velocity);
-    sample.speeding = velocity < 0 ? -change : change;
+    sample.tangential_acceleration = velocity < 0 ? -change : change;
     const double exact =
         (height(place(t + d)) - 2 * height(place(t)) + height(place(t - d))) / (d * d);
     sample.acceleration =
@@ -88,14 +87,14 @@ HeightOptions sensor() {
   return options;
 }
 
-// The best wave of this length in a profile: amplitude, and what it leaves.
+// Amplitude of the best wave of this length in a profile, and the residual.
 std::pair<double, double> waveIn(const std::vector<ProfilePoint>& points, double length) {
   Eigen::MatrixXd A(static_cast<Eigen::Index>(points.size()), 4);
   Eigen::VectorXd b(A.rows());
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     const ProfilePoint& point = points[static_cast<std::size_t>(i)];
-    const double angle = 2 * kPi * point.along / length;
-    A.row(i) << std::cos(angle), std::sin(angle), 1, point.along;
+    const double angle = 2 * kPi * point.arc_length / length;
+    A.row(i) << std::cos(angle), std::sin(angle), 1, point.arc_length;
     b[i] = point.height;
   }
   const Eigen::VectorXd x = SymmetricSolver(A.transpose() * A).solve(A.transpose() * b);
@@ -107,7 +106,7 @@ TEST(HeightProfile, FindsAWaveScannedAtVaryingSpeed) {
   const auto wave = [](double s) { return 60e-6 * std::sin(2 * kPi * s / 2e-3); };
   const auto place = [](double t) { return 0.05 * t - 0.03 / (2 * kPi * 0.5) * std::cos(kPi * t); };
   const Drawn drawn = drawnOver(wave, place, 4, 1);
-  const HeightProfile profile = heightAlong(drawn.samples, sensor());
+  const HeightProfile profile = estimateProfile(drawn.samples, sensor());
   double best = 0, least = INFINITY;
   for (double length = 1.9e-3; length < 2.1e-3; length += 1e-6)
     if (const double left = waveIn(profile.points, length).second; left < least) {
@@ -133,54 +132,55 @@ double roughWave(double s) {
   return surface(Vec2(s, 0.4 * s));
 }
 
-TEST(HeightProfile, StandingStillTeachesNothing) {
-  // Moves, stands for two seconds, goes on; against the same without standing.
+TEST(HeightProfile, GainsNoInformationAtRest) {
+  // The tip moves, rests for two seconds and moves on, against the same path without the rest.
   const auto eased = [](double x) { return x * x * x * (10 - 15 * x + 6 * x * x); };
   const auto place = [&](double t) {
     const double x = std::clamp(t, 0., 1.), y = std::clamp(t - 3, 0., 1.);
     return 0.03 * (eased(x) + eased(y));
   };
   const Drawn drawn = drawnOver(roughWave, place, 4, 2);
-  const HeightProfile profile = heightAlong(drawn.samples, sensor());
+  const HeightProfile profile = estimateProfile(drawn.samples, sensor());
   double most = 0;
   for (std::size_t i = 520; i < 1480; ++i)
     most = std::max(most, std::abs(profile.points[i].height - profile.points[500].height));
   EXPECT_LT(most, 1e-9) << "it wandered while it stood";
   EXPECT_LT(relativeError(profile.points, drawn.heights), 0.65); // long waves are lost
-  const std::vector<ProfilePoint> places = resampled(profile.points, 0.1e-3);
-  EXPECT_NEAR(static_cast<double>(places.size()), 0.06 / 0.1e-3, 20);
 }
 
-TEST(HeightProfile, ComesBackTheWayItWent) {
+TEST(HeightProfile, UsesTheReversalOfThePath) {
   const auto place = [](double t) { return 0.03 * std::sin(kPi * t / 2 + 1e-9); };
   Drawn drawn = drawnOver(roughWave, place, 2, 3, true);
   HeightOptions options;
   options.acceleration_variance = 1e-6;
   options.rms = 40e-6;
   options.length = 1e-3;
-  const double straight = relativeError(heightAlong(drawn.samples, options).points, drawn.heights);
+  const double straight =
+      relativeError(estimateProfile(drawn.samples, options).points, drawn.heights);
   for (std::size_t i = 1; i < drawn.samples.size(); ++i)
-    if (drawn.samples[i].t >= 1 && drawn.samples[i - 1].t < 1) drawn.samples[i].turn = -1;
-  const double turned = relativeError(heightAlong(drawn.samples, options).points, drawn.heights);
+    if (drawn.samples[i].t >= 1 && drawn.samples[i - 1].t < 1)
+      drawn.samples[i].direction_cosine = -1;
+  const double turned =
+      relativeError(estimateProfile(drawn.samples, options).points, drawn.heights);
   EXPECT_LT(turned, 0.25);
   EXPECT_GT(straight, 1.5 * turned) << "the turn made no difference";
 }
 
-TEST(HeightProfile, ErrorsAreAsLargeAsItSays) {
-  // A surface that is what it is taken for.
+TEST(HeightProfile, StatedErrorsHold) {
+  // A surface that matches the model.
   const double rms = 50e-6, length = 1e-3, speed = 0.04, dt = 0.002;
   const double wave = std::sqrt(7.) / length;
-  const RoughStep step = roughStep(wave * speed * dt);
+  const MaternStep step = maternTransition(wave * speed * dt);
   double nees = 0;
   constexpr int kRuns = 30;
   for (std::uint32_t run = 0; run < kRuns; ++run) {
     std::mt19937 random(run);
     std::normal_distribution<double> normal;
     const auto drawn = [&] {
-      return RoughState(normal(random), normal(random), normal(random), normal(random));
+      return MaternState(normal(random), normal(random), normal(random), normal(random));
     };
     const RoughSquare first = roughCovariance().llt().matrixL();
-    RoughState x = rms * (first * drawn());
+    MaternState x = rms * (first * drawn());
     const Eigen::LDLT<RoughSquare> Q(step.Q);
     const RoughSquare root =
         Q.transpositionsP().transpose() *
@@ -191,7 +191,7 @@ TEST(HeightProfile, ErrorsAreAsLargeAsItSays) {
       if (i > 0) x = step.A * x + rms * (root * drawn());
       TracedSample sample;
       sample.t = i * dt;
-      sample.along = sample.t * speed;
+      sample.arc_length = sample.t * speed;
       sample.speed = speed;
       sample.acceleration =
           std::pow(wave * speed, 2) * x[2] + std::sqrt(kVariance) * normal(random);
@@ -201,7 +201,7 @@ TEST(HeightProfile, ErrorsAreAsLargeAsItSays) {
     HeightOptions options = sensor();
     options.rms = rms;
     options.length = length;
-    const HeightProfile profile = heightAlong(samples, options);
+    const HeightProfile profile = estimateProfile(samples, options);
     for (std::size_t i = 0; i < heights.size(); ++i)
       nees += std::pow((profile.points[i].height - heights[i]) / profile.points[i].sigma, 2) /
               (600. * kRuns);
@@ -209,7 +209,7 @@ TEST(HeightProfile, ErrorsAreAsLargeAsItSays) {
   EXPECT_NEAR(nees, 1, 0.25);
 }
 
-TEST(HeightProfile, TheCameraHoldsTheLowFrequencies) {
+TEST(HeightProfile, TakesLowFrequenciesFromTheCamera) {
   // A bowl of 80 mm radius carries the waves.
   const auto bowl = [](double s) { return std::pow(s - 0.05, 2) / (2 * 0.08) + roughWave(s); };
   const auto place = [](double t) { return 0.04 * t; };
@@ -220,7 +220,7 @@ TEST(HeightProfile, TheCameraHoldsTheLowFrequencies) {
     drawn.samples[i].height = drawn.heights[i] + 0.2e-3 * normal(random);
     drawn.samples[i].height_sigma = 0.2e-3;
   }
-  const HeightProfile profile = heightAlong(drawn.samples, sensor());
+  const HeightProfile profile = estimateProfile(drawn.samples, sensor());
   double squares = 0, nees = 0;
   for (std::size_t i = 0; i < drawn.heights.size(); ++i) {
     const double error = profile.points[i].height - drawn.heights[i];
@@ -228,7 +228,7 @@ TEST(HeightProfile, TheCameraHoldsTheLowFrequencies) {
     nees +=
         std::pow(error / profile.points[i].sigma, 2) / static_cast<double>(drawn.heights.size());
   }
-  EXPECT_LT(std::sqrt(squares), 0.1e-3); // of heights of 16 mm
+  EXPECT_LT(std::sqrt(squares), 0.1e-3); // the heights are 16 mm
   EXPECT_LT(nees, 4);
 }
 
@@ -238,9 +238,9 @@ struct Traces {
   double ours = 0, knowing = 0, plain = 0; // relative rms
 };
 
-// What a filter that integrates twice makes of the accelerations, term by term of the cosine
-// series: `knowing`, Wiener's, which is told the true power of each term, bounds what can be had;
-// `plain` takes all.
+// Errors of filters that integrate the accelerations twice, term by term of the cosine series.
+// `knowing` is the Wiener filter for the true power of each term, which is the lower bound;
+// `plain` takes all terms.
 void addOracles(const TraceReading& reading, double part, Traces& traces) {
   const std::size_t n = reading.samples.size();
   const auto count = static_cast<double>(n);
@@ -266,14 +266,14 @@ void addOracles(const TraceReading& reading, double part, Traces& traces) {
   traces.plain += part * plain / all;
 }
 
-// Over several places of the sensor's steps, root mean square.
+// Root mean square over several offsets of the sensor's steps.
 Traces tracesOver(const std::vector<double>& heights, double step, double speed) {
   constexpr int kOffsets = 4;
   Traces traces;
   for (std::uint32_t k = 0; k < kOffsets; ++k) {
     const TraceReading reading =
         readTrace(heights, step, speed, 500, kStep, kNoise, kStep * (k + 0.5) / kOffsets, k);
-    const HeightProfile profile = heightAlong(reading.samples, sensor());
+    const HeightProfile profile = estimateProfile(reading.samples, sensor());
     traces.ours += std::pow(relativeError(profile.points, reading.heights), 2) / kOffsets;
     addOracles(reading, 1. / kOffsets, traces);
   }
@@ -285,8 +285,8 @@ Traces tracesOver(const std::vector<double>& heights, double step, double speed)
   return traces;
 }
 
-// The twin of the shared surface: where its long waves lie decides what is lost to any filter.
-TEST(HeightProfile, OfMilledSurfacesIsNearWhatTheSensorAllows) {
+// Counterpart of the shared surface: the phase of its long waves limits every filter.
+TEST(HeightProfile, ApproachesTheSensorLimitOnMilledSurfaces) {
   const double step = 5e-6;
   for (const std::uint32_t seed : {1, 2, 3}) {
     const std::vector<double> heights = envelope(milledProfile(seed, 28e-3, step), step, 0.5e-3);
@@ -299,15 +299,16 @@ TEST(HeightProfile, OfMilledSurfacesIsNearWhatTheSensorAllows) {
   }
 }
 
-// Fast, the accelerations of neighbours have little in common; measured 0.3 to 0.4.
-TEST(HeightProfile, OfMilledSurfacesIsFoundFast) {
+// At high speed neighbouring accelerations are nearly independent; measured 0.3 to 0.4.
+TEST(HeightProfile, IsFastOnMilledSurfaces) {
   const double step = 5e-6;
   for (const std::uint32_t seed : {1, 2, 3, 4}) {
     const std::vector<double> heights = envelope(milledProfile(seed, 28e-3, step), step, 0.5e-3);
     for (const double speed : {0.06, 0.08}) {
       const TraceReading reading =
           readTrace(heights, step, speed, 500, kStep, kNoise, kStep / 3, seed);
-      EXPECT_LE(relativeError(heightAlong(reading.samples, sensor()).points, reading.heights), 0.5)
+      EXPECT_LE(relativeError(estimateProfile(reading.samples, sensor()).points, reading.heights),
+                0.5)
           << seed << " at " << speed;
     }
   }
@@ -324,7 +325,7 @@ std::vector<double> readHeights(const std::filesystem::path& path) {
 }
 
 // Heights 200 times, lengths 5 times as large as measured.
-TEST(HeightProfile, OfTheSharedMilledSurfaceIsNearWhatTheSensorAllows) {
+TEST(HeightProfile, ApproachesTheSensorLimitOnTheSharedMilledSurface) {
   const std::filesystem::path path = test::sharedData("profiles/npl_mill.xml");
   PATINA_SKIP_WITHOUT(path);
   std::vector<double> heights = readHeights(path);
@@ -338,9 +339,8 @@ TEST(HeightProfile, OfTheSharedMilledSurfaceIsNearWhatTheSensorAllows) {
   }
 }
 
-TEST(HeightProfile, OfNothingIsEmpty) {
-  EXPECT_TRUE(heightAlong({}, sensor()).points.empty());
-  EXPECT_TRUE(resampled({}, 1e-3).empty());
+TEST(HeightProfile, IsEmptyWithoutSamples) {
+  EXPECT_TRUE(estimateProfile({}, sensor()).points.empty());
 }
 
 } // namespace

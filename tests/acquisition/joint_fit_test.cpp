@@ -11,8 +11,8 @@
 namespace patina {
 namespace {
 
-// A body by its formula. Paths lie on its mesh, for what facets leave out, up to 1 um, is no less
-// than what 3000 samples tell.
+// A body by its formula. Paths lie on its mesh, because the error of the facets, up to 1 um, is not
+// small against the precision of 3000 samples.
 double radiusAt(const Vec3& d) {
   return 0.035 + 0.006 * d.x() * d.y() + 0.005 * std::sin(3 * d.z() + d.x()) +
          0.003 * std::cos(5 * d.y() - 2 * d.z()) + 0.004 * d.x();
@@ -41,7 +41,7 @@ struct JointScan {
   double clock = 4e-3, noise = 50e-6, compliance = 0.5e-3;
   bool tilts = true;
 
-  // Where the tip is at t, and how hard it presses.
+  // Position and force of the tip at time t.
   double force(double t) const { return 1 + 0.8 * std::sin(2 * std::numbers::pi * 3 * t); }
   Vec3 tipAt(double t) const {
     const Vec3 d = Vec3(std::cos(2.1 * t) + 0.3 * std::sin(5 * t), std::sin(2.9 * t),
@@ -78,14 +78,14 @@ JointScan jointScanOf(unsigned seed) {
   return scan;
 }
 
-// The pose alone, with the tip and the clock as they are told.
+// Fits the pose alone, with the given tip and clock.
 Pose separately(const SurfaceTarget& target, const std::vector<PathSample>& path, const Pose& start,
                 double compliance) {
   std::vector<Vec3> points;
   FitOptions options;
   for (const PathSample& sample : path) {
     points.push_back(sample.position);
-    options.pressed.push_back(compliance * sample.force);
+    options.indentations.push_back(compliance * sample.force);
   }
   return fitPath(target, points, start, options).mesh_from_path;
 }
@@ -99,7 +99,7 @@ double bodyMissOf(const Pose& found, const JointScan& scan) { // rms over the bo
   return std::sqrt(sum / 300);
 }
 
-TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
+TEST(JointFit, PredictsItsErrorsAndBeatsSeparateSteps) {
   const int rounds = 30;
   double nees = 0, joint = 0, apart = 0, tip = 0, clock = 0;
   for (unsigned seed = 0; seed < rounds; ++seed) {
@@ -111,7 +111,7 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
     options.compliance = scan.compliance;
     const JointFit fit = fitJointly(body(), path, counts, before, options);
     ASSERT_TRUE(fit.converged);
-    EXPECT_TRUE(fit.frozen.empty()) << fit.frozen.front();
+    EXPECT_TRUE(fit.unobservable_parameters.empty()) << fit.unobservable_parameters.front();
     const Pose off = fit.mesh_from_path * scan.mesh_from_path.inverse();
     const Eigen::AngleAxisd turn(off.linear());
     JointVector error;
@@ -125,16 +125,16 @@ TEST(JointFit, ErrorsAreThoseItPredictsAndBelowThoseOfSeparateSteps) {
   }
   std::printf("NEES %.2f, pose %.4f mm (apart %.4f), tip %.4f mm of .99, clock %.3f ms of 4\n",
               nees, 1e3 * joint, 1e3 * apart, 1e3 * tip, 1e3 * clock);
-  EXPECT_GT(nees, 0.8); // of 300 freedoms one deviation is .08
+  EXPECT_GT(nees, 0.8); // one deviation is .08 for 300 degrees of freedom
   EXPECT_LT(nees, 1.25);
   EXPECT_LT(joint, 0.2 * apart);
   EXPECT_LT(tip, 0.03e-3);
   EXPECT_LT(clock, 0.5e-3);
 }
 
-// A probe that never tilts cannot tell its tip from the path's shift; one that a rigid body holds
-// says nothing of the clock.
-TEST(JointFit, WhatTheScanDoesNotTellIsNamedAndStaysWhereItWas) {
+// The tip cannot be separated from a shift of the path unless the probe tilts; on a rigid body the
+// clock offset is unobservable.
+TEST(JointFit, ReportsAndFixesUnobservableParameters) {
   JointScan scan = jointScanOf(1);
   scan.tilts = false;
   scan.compliance = 0;
@@ -142,25 +142,25 @@ TEST(JointFit, WhatTheScanDoesNotTellIsNamedAndStaysWhereItWas) {
   const std::vector<bool> counts(path.size(), true);
   const Pose start = separately(body(), path, scan.mesh_from_path, 0);
   const JointFit fit = fitJointly(body(), path, counts, start);
-  for (const std::string& words : fit.frozen) std::printf("%s\n", words.c_str());
-  EXPECT_EQ(fit.frozen.size(), 4U);
+  for (const std::string& words : fit.unobservable_parameters) std::printf("%s\n", words.c_str());
+  EXPECT_EQ(fit.unobservable_parameters.size(), 4U);
   EXPECT_NEAR(fit.clock, 0, 1e-6);
-  EXPECT_FALSE(fit.clock_deviation.has_value()); // none is stated of what nobody told
+  EXPECT_FALSE(fit.clock_deviation.has_value()); // absent if unobservable
   EXPECT_FALSE(fit.tip_deviation.has_value());
   const auto names = [&](const char* what) {
-    return std::count_if(fit.frozen.begin(), fit.frozen.end(), [&](const std::string& words) {
-      return words.find(what) != std::string::npos;
-    });
+    return std::count_if(
+        fit.unobservable_parameters.begin(), fit.unobservable_parameters.end(),
+        [&](const std::string& words) { return words.find(what) != std::string::npos; });
   };
   EXPECT_EQ(names("the tip along"), 3);
   EXPECT_EQ(names("the clock"), 1);
-  // Along what is frozen nothing moved: the tip took as much as the shift gave, and both are small.
+  // Nothing moved along fixed directions: the tip compensates the shift, and both are small.
   EXPECT_LT(fit.tip.norm(), 0.05e-3);
 }
 
-// A tip that is millimetres off lets no pose fit; with it mended the pose is as good as any, and
-// all samples count again.
-TEST(JointFit, WhetherItConvergedIsJudgedByWhatIsLeft) {
+// No pose fits if the tip is wrong by millimetres. Once the tip is corrected, the pose is as good
+// as any and all samples count again.
+TEST(JointFit, JudgesConvergenceByTheResiduals) {
   JointScan scan = jointScanOf(3);
   scan.tip = Vec3(2e-3, 1.5e-3, 0);
   scan.clock = 0;
@@ -171,7 +171,7 @@ TEST(JointFit, WhetherItConvergedIsJudgedByWhatIsLeft) {
   registering.search = false;
   for (const PathSample& sample : path) {
     points.push_back(sample.position);
-    registering.pressed.push_back(scan.compliance * sample.force);
+    registering.indentations.push_back(scan.compliance * sample.force);
   }
   Progress progress;
   Registration found = registerPath(body(), points, scan.mesh_from_path, registering, progress);
@@ -181,43 +181,43 @@ TEST(JointFit, WhetherItConvergedIsJudgedByWhatIsLeft) {
   const JointFit fit = refine(body(), options, registering, path, found, progress);
   EXPECT_TRUE(found.converged);
   EXPECT_NEAR(found.rms, scan.noise, 0.1 * scan.noise);
-  EXPECT_GT(std::count(found.counts.begin(), found.counts.end(), true), 2900);
+  EXPECT_GT(std::count(found.inliers.begin(), found.inliers.end(), true), 2900);
   EXPECT_LT((fit.tip - scan.tip).norm(), 0.1e-3);
-  EXPECT_LT(found.together, 2); // white noise is what is left
-  // Where the noise that is told does not explain what is left, it has not.
+  EXPECT_LT(found.correlation_length, 2); // only white noise is left
+  // The fit has not converged if the stated noise does not explain the residuals.
   auto again = scan.path(3);
   registering.noise = 0.3 * scan.noise;
   EXPECT_TRUE(refine(body(), options, registering, again, found, progress).converged); // at rest
   EXPECT_FALSE(found.converged);
 }
 
-// What a tip that is off lets pass for other places is none once it is mended.
-TEST(JointFit, WhetherItsPlaceIsUniqueIsJudgedByThePathThatItFound) {
+// Alternative poses seem to fit with a wrong tip; with the corrected tip there are none.
+TEST(JointFit, JudgesUniquenessByTheFittedPath) {
   JointScan scan = jointScanOf(3);
   scan.tip = Vec3(5e-3, -3e-3, 0);
   auto path = scan.path(3);
   std::vector<Vec3> points;
   RegistrationOptions registering;
   registering.noise = scan.noise;
-  registering.rivals = true;
+  registering.alternatives = true;
   for (const PathSample& sample : path) {
     points.push_back(sample.position);
-    registering.pressed.push_back(scan.compliance * sample.force);
+    registering.indentations.push_back(scan.compliance * sample.force);
   }
   Progress progress;
   Registration found = registerPath(body(), points, scan.mesh_from_path, registering, progress);
-  ASSERT_TRUE(found.rivals.has_value());
-  EXPECT_FALSE(found.rivals->empty());
+  ASSERT_TRUE(found.alternatives.has_value());
+  EXPECT_FALSE(found.alternatives->empty());
   JointOptions options;
   options.compliance = scan.compliance;
   const JointFit fit = refine(body(), options, registering, path, found, progress);
-  EXPECT_TRUE(found.rivals->empty()) << inWords(*found.rivals);
+  EXPECT_TRUE(found.alternatives->empty()) << inWords(*found.alternatives);
   EXPECT_TRUE(found.converged);
   EXPECT_LT((fit.tip - scan.tip).norm(), 0.1e-3);
   EXPECT_LT(bodyMissOf(found.mesh_from_path, scan), 0.05e-3);
 }
 
-TEST(JointFit, WhatIsNotAskedForStays) {
+TEST(JointFit, KeepsParametersThatAreNotFitted) {
   const JointScan scan = jointScanOf(2);
   const auto path = scan.path(2);
   JointOptions options;
@@ -229,7 +229,7 @@ TEST(JointFit, WhatIsNotAskedForStays) {
   EXPECT_FALSE(fit.clock_deviation.has_value());
   ASSERT_TRUE(fit.tip_deviation.has_value());
   EXPECT_NEAR(*fit.tip_deviation, std::sqrt(fit.covariance.block<3, 3>(6, 6).trace() / 3), 1e-12);
-  EXPECT_TRUE(fit.frozen.empty());
+  EXPECT_TRUE(fit.unobservable_parameters.empty());
   EXPECT_LT((fit.tip - scan.tip).norm(), 0.1e-3);
   EXPECT_THROW(fitJointly(body(), path, {true}, Pose::Identity()), std::invalid_argument);
 }

@@ -24,7 +24,7 @@ std::vector<Camera> cameraModels() {
   Camera pinhole = test::smallCamera();
   pinhole.distortion = {};
   all.push_back(pinhole);
-  // As real calibrations are: of a telephone, an Azure Kinect and a T265.
+  // Real calibrations of a telephone, an Azure Kinect and a T265.
   all.push_back({1920, 1080, 1412.3, 1411.8, 962.1, 541.7, {0.124, -0.257, 8e-4, -3e-4, 0.142}});
   all.push_back({1280, 720, 608, 608, 640, 366, {0.52, -2.7, 1e-3, -3e-4, 1.56, 0.4, -2.52, 1.49}});
   Camera t265{848, 800, 286.3, 286.4, 425.1, 399.8, {-0.0083, 0.0447, -0.0424, 0.0080}};
@@ -39,7 +39,7 @@ TEST(Lens, SeesPointsWhereOpenCvDoes) {
   for (const Camera& camera : cameraModels())
     for (int i = 0; i < 200; ++i) {
       const Vec2 pixel(unit(random) * camera.width, unit(random) * camera.height);
-      const auto flat = flatOf(camera, pixel);
+      const auto flat = normalizedPoint(camera, pixel);
       if (!flat) continue; // behind the lens, or beyond 89 degrees
       const Vec3 point = (0.3 + unit(random)) * flat->homogeneous();
       EXPECT_LT((pixelOf(camera, point) - test::projectedByOpenCv(camera, point)).norm(), 1e-9);
@@ -52,16 +52,16 @@ TEST(Lens, IsInvertedToTenDigitsOverThePicture) {
     for (int i = 0; i <= 20; ++i)
       for (int j = 0; j <= 20; ++j) {
         const Vec2 pixel(0.05 * i * (camera.width - 1), 0.05 * j * (camera.height - 1));
-        const auto flat = flatOf(camera, pixel);
+        const auto flat = normalizedPoint(camera, pixel);
         if (!flat) continue;
         ++seen;
         const Vec2 back = test::projectedByOpenCv(camera, flat->homogeneous());
         EXPECT_LT((back - pixel).norm() / camera.fx, 1e-10);
-        const auto straight = straightened(camera, pixel);
+        const auto straight = undistortedPoint(camera, pixel);
         ASSERT_TRUE(straight);
-        EXPECT_LT((bentBack(camera, *straight) - pixel).norm() / camera.fx, 1e-10);
+        EXPECT_LT((distortedPoint(camera, *straight) - pixel).norm() / camera.fx, 1e-10);
       }
-    // A lens of more than 178 degrees has corners that no plane shows.
+    // A lens of more than 178 degrees has corners that no plane contains.
     EXPECT_GE(seen, camera.width == 848 ? 300 : 441);
   }
 }
@@ -87,22 +87,23 @@ TEST(Lens, HasTheDerivativeOfItsMap) {
   EXPECT_TRUE(distortedWithJacobian(fisheye, Vec2::Zero()).jacobian.isIdentity(1e-15));
 }
 
-TEST(Lens, ShowsNothingWhereItFoldsOrSeesSideways) {
+TEST(Lens, ProjectsNothingWhereItFoldsOrLooksSideways) {
   Camera folds = test::smallCamera();
   folds.distortion = {-0.5, 0, 0, 0, 0};
   folds.fx = folds.fy = 200;
-  EXPECT_TRUE(flatOf(folds, {folds.cx + 50, folds.cy}));
-  EXPECT_FALSE(flatOf(folds, {0, 0}));
+  EXPECT_TRUE(normalizedPoint(folds, {folds.cx + 50, folds.cy}));
+  EXPECT_FALSE(normalizedPoint(folds, {0, 0}));
   Camera wide = test::fisheyeCamera();
   wide.distortion = {};
   for (const double degrees : {1., 45., 80., 88., 88.9}) {
     const double angle = degrees * M_PI / 180;
-    const auto flat = flatOf(wide, {wide.cx, wide.cy + wide.fy * angle});
+    const auto flat = normalizedPoint(wide, {wide.cx, wide.cy + wide.fy * angle});
     ASSERT_TRUE(flat) << degrees;
     EXPECT_NEAR(std::atan(flat->y()), angle, 1e-10);
   }
   for (const double degrees : {89.1, 90., 100., 170.})
-    EXPECT_FALSE(flatOf(wide, {wide.cx, wide.cy + wide.fy * degrees * M_PI / 180})) << degrees;
+    EXPECT_FALSE(normalizedPoint(wide, {wide.cx, wide.cy + wide.fy * degrees * M_PI / 180}))
+        << degrees;
 }
 
 } // namespace

@@ -11,7 +11,7 @@ namespace {
 
 struct Tracked {
   int seen = 0, frames = 0;
-  double worst = 0; // of the positions [m]
+  double worst = 0; // largest position error [m]
   double nees = 0;  // mean of the squared errors over their covariance, 6 if those hold
 };
 

@@ -19,11 +19,11 @@ namespace {
 
 struct Found {
   int shown = 0, found = 0, wrong = 0;
-  double squares = 0; // of all corners of what was found [px^2]
+  double squares = 0; // sum over all found corners [px^2]
   double rms() const { return std::sqrt(squares / (4. * found)); }
 };
 
-// Markers count as shown whose face is seen by at least 45 degrees.
+// Markers count as shown if their face is seen at 45 degrees or more.
 Found findIn(const test::RenderedRig& rig, const FrameLook& look, double distance, int frames) {
   std::mt19937 random(5);
   Found result;
@@ -43,7 +43,7 @@ Found findIn(const test::RenderedRig& rig, const FrameLook& look, double distanc
         result.squares += (found->corner[c].pixel - pixelOf(rig.camera, pose * marker.corners()[c]))
                               .squaredNorm();
     }
-    result.wrong += static_cast<int>(seen.size()) > 3; // of a cube one sees three faces
+    result.wrong += static_cast<int>(seen.size()) > 3; // at most three faces of a cube are visible
   }
   return result;
 }
@@ -62,7 +62,7 @@ FrameLook lookOf(double blur, double noise, double shade, double white = 0.85) {
   return look;
 }
 
-// Over cameras, lenses, lights and families; at most about twice of what was measured.
+// The limits are about twice the measured errors for each camera, lens, light and family.
 TEST(MarkerFinder, FindsCornersToHundredthsOfAPixel) {
   const Setting settings[] = {
       {"april", test::smallCamera(), "apriltag_36h11", lookOf(0.6, 2, 0.3), 0.4, 0.06},
@@ -108,10 +108,10 @@ TEST(MarkerFinder, SeesNothingInNoiseAndBlankFrames) {
   EXPECT_TRUE(findMarkers(tiny, books, nullptr, {true}).empty());
 }
 
-TEST(CodeBook, ForgivesSoManyWrongBitsAndNoMore) {
+TEST(CodeBook, CorrectsWrongBitsUpToItsLimit) {
   const MarkerFamily& family = markerFamily("apriltag_36h11");
   const CodeBook book(family);
-  ASSERT_EQ(family.correctable, 3);
+  ASSERT_EQ(family.max_correction, 3);
   for (const int id : {0, 17, 586}) {
     std::uint64_t code = family.code[static_cast<std::size_t>(id)];
     for (int wrong = 0; wrong <= 4; ++wrong) {
@@ -119,15 +119,15 @@ TEST(CodeBook, ForgivesSoManyWrongBitsAndNoMore) {
       ASSERT_EQ(match.has_value(), wrong <= 3) << wrong;
       if (match) {
         EXPECT_EQ(match->id, id);
-        EXPECT_EQ(match->turn, 0);
-        EXPECT_EQ(match->wrong, wrong);
+        EXPECT_EQ(match->quarter_turns, 0);
+        EXPECT_EQ(match->hamming_distance, wrong);
       }
       code ^= std::uint64_t{1} << (7 * wrong + 2);
     }
   }
 }
 
-TEST(MarkerFamily, NamesThoseThatThereAre) {
+TEST(MarkerFamily, ListsTheKnownFamilies) {
   try {
     (void)markerFamily("7x9_3");
     FAIL();
@@ -142,7 +142,7 @@ Vec2 middleOf(const SeenMarker& marker) {
   return sum;
 }
 
-TEST(MarkerFinder, FindsOnTheSharedPhotographWhatAprilTagFinds) {
+TEST(MarkerFinder, FindsTheMarkersThatAprilTagFindsOnTheSharedPhotograph) {
   const auto path = test::sharedData("markers/apriltag_34139872896_defdb2f8d9_c.jpg");
   PATINA_SKIP_WITHOUT(path);
   const GreyFrame image = readGrey(path);
@@ -168,7 +168,7 @@ TEST(MarkerFinder, FindsEachMarkerOfTheSharedBoardOnce) {
   EXPECT_EQ(ids.size(), 17u);
 }
 
-PATINA_TIMED_TEST(MarkerFinder, TakesHardlyLongerWhereThereIsNoiseAndLosesNoMarker) {
+PATINA_TIMED_TEST(MarkerFinder, TakesHardlyLongerUnderNoiseAndLosesNoMarker) {
   const test::RenderedRig rig(test::smallCamera(), "4x4_50");
   std::mt19937 random(5);
   const Pose pose = test::somePose(random, 0.4);
@@ -181,7 +181,7 @@ PATINA_TIMED_TEST(MarkerFinder, TakesHardlyLongerWhereThereIsNoiseAndLosesNoMark
   const auto looking = [&](const GreyFrame& image) {
     return [&] { (void)findMarkers(image, rig.books, &rig.camera); };
   };
-  const auto times = test::leastSeconds({looking(clear), looking(noisy), looking(noisier)});
+  const auto times = test::minSeconds({looking(clear), looking(noisy), looking(noisier)});
   std::printf("noise of 8 takes %.2f of that of 2, of 20 %.2f\n", times[1] / times[0],
               times[2] / times[0]);
   EXPECT_LT(times[1] / times[0], 1.5);

@@ -23,8 +23,7 @@ struct Crossing {
   ScanHeights heights; // along z
 };
 
-// A tip that goes over the top of a ball from one side to the other, at a steady pace over it; for
-// a while it stands.
+// The tip crosses the top of a ball at constant speed and rests there for a while.
 Crossing overTheBall(const Pose& mesh_from_scan) {
   Crossing crossing;
   crossing.heights.plane = {mesh_from_scan.linear().transpose() * Vec3::UnitZ(),
@@ -44,7 +43,7 @@ Crossing overTheBall(const Pose& mesh_from_scan) {
     last = surface.x();
     crossing.heights.heights.push_back(
         {sample.t, {flat, up.dot(sample.position - crossing.heights.plane.point), 1e-5}, 0});
-    sample.position += 0.2e-3 * up; // what the path says of the height does not count
+    sample.position += 0.2e-3 * up; // the height of the path does not count
     crossing.path.push_back(sample);
   }
   return crossing;
@@ -57,7 +56,7 @@ Pose somePose() {
   return pose;
 }
 
-TEST(MeshHeights, AreWhatIsLeftOfTheShape) {
+TEST(MeshHeights, AreTheResidualsOfTheShape) {
   const SurfaceTarget ball(icosphere(kRadius, 40), 0, true);
   const Crossing crossing = overTheBall(somePose());
   const std::vector<ScanHeight> over =
@@ -67,29 +66,30 @@ TEST(MeshHeights, AreWhatIsLeftOfTheShape) {
   for (std::size_t i = 0; i < over.size(); ++i) {
     const double moved = static_cast<double>(i < 500 ? i : std::max<std::size_t>(i, 699) - 200);
     const double way = i < 500 || i >= 700 ? moved * 0.036 / 1000 : 499 * 0.036 / 1000;
-    // Faces leave the ball by 3 um; the way by what half a look at the ends of standing sees.
+    // Facets deviate from the ball by 3 um, the arc length by half a sample at each end of the
+    // rest.
     EXPECT_NEAR(over[i].point.height, ripple(begin + way), 6e-6) << i;
-    EXPECT_NEAR(over[i].point.along, way, 0.15e-3) << i;
+    EXPECT_NEAR(over[i].point.arc_length, way, 0.15e-3) << i;
     EXPECT_LE(over[i].point.sigma, 1e-5);
   }
 }
 
-TEST(MeshHeights, StandingIsNoWay) {
+TEST(MeshHeights, ArcLengthDoesNotGrowAtRest) {
   const SurfaceTarget ball(icosphere(kRadius, 40), 0, true);
   const Crossing crossing = overTheBall(somePose());
   const std::vector<ScanHeight> over =
       heightsOverMesh(ball, somePose(), crossing.path, crossing.heights);
-  EXPECT_LT(over[640].point.along - over[560].point.along, 1e-6); // of 160 ms of tremor
+  EXPECT_LT(over[640].point.arc_length - over[560].point.arc_length, 1e-6); // 160 ms of tremor
 }
 
-TEST(MeshHeights, AreNotAskedOfASteepSide) {
+TEST(MeshHeights, AreAbsentOnASteepSide) {
   const SurfaceTarget ball(icosphere(kRadius, 40), 0, true);
   Crossing crossing = overTheBall(Pose::Identity());
   crossing.heights.plane.normal = Vec3::UnitX();
   EXPECT_LT(heightsOverMesh(ball, Pose::Identity(), crossing.path, crossing.heights).size(), 300u);
 }
 
-TEST(MeshHeights, HaveTheMeanNormalOfWhatIsUnderThePath) {
+TEST(MeshHeights, HaveTheMeanNormalUnderThePath) {
   const SurfaceTarget ball(icosphere(kRadius, 40), 0, true);
   const Crossing crossing = overTheBall(somePose());
   const Vec3 normal = somePose().linear() * meanNormal(ball, somePose(), crossing.path);

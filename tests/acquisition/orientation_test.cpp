@@ -1,4 +1,4 @@
-#include "acquisition/orientation.h"
+#include "acquisition/values/orientation.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The point that is seen as shown where `point` is seen as stored: as pixels, it is mirrored, too.
+// Returns the displayed position of the stored `point`, as pixel coordinates; mirroring included.
 Vec3 shownPoint(const Vec3& point, int orientation) {
   const GreyFrame none{1, 1, {}, orientation};
   Vec3 shown = point;
@@ -29,7 +29,7 @@ Vec3 shownPoint(const Vec3& point, int orientation) {
   return shown;
 }
 
-TEST(Orientation, OfACameraIsThatOfItsPictures) {
+TEST(Orientation, CameraIsRotatedLikeItsPictures) {
   Camera tilted = test::tiltedCamera(), tilted_y = test::tiltedCamera();
   tilted.distortion[13] = 0;
   tilted_y.distortion[12] = 0;
@@ -47,7 +47,7 @@ TEST(Orientation, OfACameraIsThatOfItsPictures) {
     }
 }
 
-TEST(Orientation, OfASensorTiltedAboutTwoAxesIsRefusedWhereItCannotBeTold) {
+TEST(Orientation, IsRejectedIfATiltAboutTwoAxesIsAmbiguous) {
   EXPECT_NO_THROW((void)turned(test::tiltedCamera(), 3));
   EXPECT_THROW((void)turned(test::tiltedCamera(), 6), Error);
 }
@@ -71,7 +71,7 @@ class OrientedFrames : public testing::Test {
     Progress progress;
     return trackFrames(*openFrames(folder.string(), 30), camera, rig.markers, {}, progress);
   }
-  // By how much poses differ from those of the upright pictures [m or rad].
+  // Largest difference from the poses of the upright pictures [m or rad].
   static double apart(const TrackedFrames& a, const TrackedFrames& b) {
     EXPECT_EQ(a.poses.size(), 3u);
     EXPECT_EQ(b.poses.size(), 3u);
@@ -81,7 +81,7 @@ class OrientedFrames : public testing::Test {
                        a.poses[i].orientation.angularDistance(b.poses[i].orientation)});
     return most;
   }
-  // The camera whose pictures as stored are turned to be those of rig.camera.
+  // The camera of the stored pictures, which become those of rig.camera when rotated.
   Camera storedCamera(int orientation) const {
     return turned(rig.camera, orientation == 6 ? 8 : orientation == 8 ? 6 : orientation);
   }
@@ -118,8 +118,8 @@ TEST_F(OrientedFrames, GiveThePosesOfUprightOnes) {
   EXPECT_LT(most, 1e-6);
 }
 
-// Each orientation is compressed anew, which moves corners a little.
-TEST_F(OrientedFrames, OfJpegFilesDifferByTheirCompressionOnly) {
+// Each orientation is compressed separately, which moves corners a little.
+TEST_F(OrientedFrames, DifferOnlyByCompressionInJpegFiles) {
   store(1, test::writeJpeg);
   const TrackedFrames upright = tracked(rig.camera);
   double most = 0;
@@ -162,13 +162,14 @@ TEST_F(OrientedFrames, AreRecordedAsShownWithTheirCamera) {
   fs::remove_all(known);
 }
 
-TEST_F(OrientedFrames, ThatAreNotTurnedAlikeSaySo) {
+TEST_F(OrientedFrames, ReportDifferentOrientations) {
   store(1, test::writeTiff);
   test::writeTiff(folder / "IMG_2", test::storedAs(images[2], 3), 3);
   const TrackedFrames found = tracked(rig.camera);
   EXPECT_EQ(found.poses.size(), 3u);
   ASSERT_EQ(found.notes.size(), 1u);
-  EXPECT_NE(found.notes[0].find("not all are turned alike (the first by 1, "), std::string::npos)
+  EXPECT_NE(found.notes[0].find("not all have one orientation (the first has 1, "),
+            std::string::npos)
       << found.notes[0];
   // Another size is another camera.
   test::writeTiff(folder / "IMG_2", test::storedAs(images[2], 1), 6);

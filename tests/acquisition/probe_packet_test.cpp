@@ -1,5 +1,5 @@
-// A probe's packets: what the C packer makes against bytes written down by hand, and what the
-// reader makes of them, of any other bytes, and of a serial line that loses some.
+// A probe's packets: the output of the C packer against bytes written by hand, and the reader's
+// result for them, for any other bytes, and for a serial line that loses some.
 #include "acquisition/sources/probe_packet.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ ProbePacket bytesOf(const Raw& raw) {
 probe_description someDescription() {
   probe_description made{};
   std::strcpy(made.name, "Pen");
-  std::memcpy(made.serial, "0123456789abcdef", 16); // fills its room: no zero ends it
+  std::memcpy(made.serial, "0123456789abcdef", 16); // fills its field without a final zero
   made.firmware = 0x00020003;
   made.period_ns = 250000;
   const char* names[] = {"force", "a1u", "a1v", "a2u", "a2v"};
@@ -40,11 +40,11 @@ probe_description someDescription() {
   return made;
 }
 
-TEST(ProbePacker, CountsItsCheckAsTheWorldDoes) {
+TEST(ProbePacker, ComputesTheStandardChecksum) {
   EXPECT_EQ(probe_crc(reinterpret_cast<const std::uint8_t*>("123456789"), 9), 0xcbf43926U);
 }
 
-TEST(ProbePacker, PutsEachByteWhereTheProtocolSays) {
+TEST(ProbePacker, FollowsTheByteLayoutOfTheProtocol) {
   const probe_description about = someDescription();
   probe_packer packer;
   probe_start(&packer, &about, 2);
@@ -55,7 +55,7 @@ TEST(ProbePacker, PutsEachByteWhereTheProtocolSays) {
   const Raw expected{1, 1, 2,   1,   0, 0, 0, 0,   0,   0,   0, 0, 8, 7, 6, 5, 4, 3, 2,  1,
                      1, 0, 255, 255, 3, 2, 0, 128, 255, 127, 6, 0, 7, 0, 8, 0, 9, 0, 10, 0};
   EXPECT_TRUE(std::equal(raw.begin(), raw.begin() + 60, expected.begin()));
-  // The numbers of the next packet.
+  // The values of the next packet.
   EXPECT_EQ(probe_add(&packer, first, 5, 0, raw.data()), 0);
   EXPECT_EQ(probe_add(&packer, first, 6, 0, raw.data()), 1);
   EXPECT_EQ(raw[4], 1);
@@ -63,7 +63,61 @@ TEST(ProbePacker, PutsEachByteWhereTheProtocolSays) {
   EXPECT_EQ(raw[3], 0) << "flags are a packet's own";
 }
 
-TEST(ProbePacket, IsReadAsItWasMade) {
+// The first five channels of a probe with a gyroscope are those of one without.
+probe_description withGyroscope() {
+  probe_description made = someDescription();
+  const char* names[] = {"wx", "wy", "wz"};
+  for (int i = 0; i < 3; ++i) {
+    probe_channel& channel = made.channel[5 + i];
+    channel = made.channel[1];
+    std::strcpy(channel.name, names[i]);
+    std::strcpy(channel.unit, "rad/s");
+  }
+  made.gyroscope = 1;
+  return made;
+}
+
+TEST(ProbePacker, HasRoomForTwoSamplesWithAGyroscope) {
+  const probe_description about = withGyroscope();
+  probe_packer packer;
+  probe_start(&packer, &about, 4);
+  EXPECT_EQ(packer.most, 2u);
+  EXPECT_EQ(probe_parts(&packer), 9u);
+  Raw raw{};
+  const std::int16_t first[8] = {1, 2, 3, 4, 5, 6, -7, 0x0809}, second[8] = {-1};
+  EXPECT_EQ(probe_add(&packer, first, 5, 0, raw.data()), 0);
+  EXPECT_EQ(probe_add(&packer, second, 6, 0, raw.data()), 1);
+  const Raw expected{1, 3, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 5, 0,   0,   0, 0, 0,   0,
+                     0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0, 249, 255, 9, 8, 255, 255};
+  EXPECT_TRUE(std::equal(raw.begin(), raw.begin() + 60, expected.begin()));
+  const ProbeContent content = parseProbePacket(bytesOf(raw));
+  const auto* read = std::get_if<ProbeSamples>(&content);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->channels, 8u);
+  ASSERT_EQ(read->count, 2u);
+  EXPECT_TRUE(std::equal(first, first + 8, read->counts[0].begin()));
+  EXPECT_TRUE(std::equal(second, second + 8, read->counts[1].begin()));
+}
+
+TEST(ProbePacket, IsRejectedIfMoreSamplesAreSaidThanItHolds) {
+  for (const auto& [about, most] : {std::pair{someDescription(), 4}, {withGyroscope(), 2}}) {
+    probe_packer packer;
+    probe_start(&packer, &about, 1);
+    Raw raw{};
+    const std::int16_t counts[8] = {};
+    for (int said = 0; said < 7; ++said) {
+      ASSERT_EQ(probe_add(&packer, counts, 5, 0, raw.data()), 1);
+      raw[2] = static_cast<std::uint8_t>(said);
+      const std::uint32_t crc = probe_crc(raw.data(), 60);
+      for (unsigned i = 0; i < 4; ++i) raw[60 + i] = static_cast<std::uint8_t>(crc >> 8 * i);
+      EXPECT_EQ(std::holds_alternative<ProbeSamples>(parseProbePacket(bytesOf(raw))),
+                said >= 1 && said <= most)
+          << said;
+    }
+  }
+}
+
+TEST(ProbePacket, ReadsBackUnchanged) {
   const probe_description about = someDescription();
   probe_packer packer;
   probe_start(&packer, &about, 3);
@@ -84,7 +138,7 @@ TEST(ProbePacket, IsReadAsItWasMade) {
     const ProbeContent content = parseProbePacket(bytesOf(raw));
     const auto* read = std::get_if<ProbeSamples>(&content);
     ASSERT_TRUE(read);
-    EXPECT_EQ(read->packet, 0xfffffffe + static_cast<std::uint32_t>(round)); // round the corner
+    EXPECT_EQ(read->packet, 0xfffffffe + static_cast<std::uint32_t>(round)); // wraps around
     EXPECT_EQ(read->first, 17U + 3U * static_cast<unsigned>(round));
     EXPECT_EQ(read->time_ns, time);
     EXPECT_EQ(read->count, 3u);
@@ -95,7 +149,7 @@ TEST(ProbePacket, IsReadAsItWasMade) {
   }
 }
 
-TEST(ProbePacket, OfOneWrongBitOrAnotherLengthIsNone) {
+TEST(ProbePacket, IsRejectedIfABitOrTheLengthIsWrong) {
   EmulatedProbe probe({});
   Raw raw{};
   std::ranges::copy(std::bit_cast<Raw>(probe.describe(2)), raw.begin());
@@ -111,7 +165,8 @@ TEST(ProbePacket, OfOneWrongBitOrAnotherLengthIsNone) {
 }
 
 // All parts of a description, in the order given.
-bool takeAll(ProbeParts& parts, const probe_description& about, std::vector<unsigned> order) {
+bool takeAll(DescriptionAssembler& parts, const probe_description& about,
+             std::vector<unsigned> order) {
   probe_packer packer;
   probe_start(&packer, &about, 4);
   bool complete = false;
@@ -123,8 +178,8 @@ bool takeAll(ProbeParts& parts, const probe_description& about, std::vector<unsi
   return complete;
 }
 
-TEST(ProbeParts, MakeADescriptionInAnyOrder) {
-  ProbeParts parts;
+TEST(DescriptionAssembler, AcceptsPartsInAnyOrder) {
+  DescriptionAssembler parts;
   ASSERT_FALSE(takeAll(parts, someDescription(), {3, 1, 1, 5, 0}));
   ASSERT_TRUE(takeAll(parts, someDescription(), {4, 2}));
   const ProbeDescription& made = parts.description();
@@ -143,8 +198,22 @@ TEST(ProbeParts, MakeADescriptionInAnyOrder) {
   EXPECT_EQ(made.channels[2].calibrated, 20001U);
 }
 
-TEST(ProbeParts, OfTwoDescriptionsDoNotMix) {
-  ProbeParts parts;
+TEST(DescriptionAssembler, ReadsTheChannelsOfAGyroscope) {
+  DescriptionAssembler parts;
+  ASSERT_FALSE(takeAll(parts, withGyroscope(), {0, 1, 2, 3, 4, 5}));
+  ASSERT_FALSE(takeAll(parts, withGyroscope(), {8, 7}));
+  ASSERT_TRUE(takeAll(parts, withGyroscope(), {6}));
+  EXPECT_TRUE(parts.description().hasGyroscope());
+  EXPECT_EQ(parts.description().channels[7].name, "wz");
+  EXPECT_EQ(parts.description().channels[7].unit, "rad/s");
+  EXPECT_EQ(parts.description().channels[4].name, "a2v");
+  EXPECT_EQ(parts.description().samples_per_packet, 2u);
+  ASSERT_TRUE(takeAll(parts, someDescription(), {0, 1, 2, 3, 4, 5}));
+  EXPECT_FALSE(parts.description().hasGyroscope());
+}
+
+TEST(DescriptionAssembler, DoesNotMixTwoDescriptions) {
+  DescriptionAssembler parts;
   probe_description other = someDescription();
   other.channel[0].scale = 9;
   EXPECT_FALSE(takeAll(parts, someDescription(), {0, 1, 2, 3, 4}));
@@ -154,11 +223,11 @@ TEST(ProbeParts, OfTwoDescriptionsDoNotMix) {
   EXPECT_EQ(parts.description().channels[0].scale, 9);
 }
 
-TEST(ProbeParts, OfWhatIsNoProbeSayWhy) {
+TEST(DescriptionAssembler, ReportsWhyADeviceIsNoProbe) {
   const auto cause = [](const auto& spoil) {
     probe_description about = someDescription();
     spoil(about);
-    ProbeParts parts;
+    DescriptionAssembler parts;
     try {
       takeAll(parts, about, {0, 1, 2, 3, 4, 5});
     } catch (const Error& error) {
@@ -179,9 +248,13 @@ TEST(ProbeParts, OfWhatIsNoProbeSayWhy) {
         << bad;
   EXPECT_NE(cause([](auto& d) { d.channel[0].high = d.channel[0].low; }).find("range"),
             std::string::npos);
+  DescriptionAssembler parts;
+  probe_description about = withGyroscope();
+  std::strcpy(about.channel[6].unit, "deg/s");
+  EXPECT_THROW(takeAll(parts, about, {0, 1, 2, 3, 4, 5, 6, 7, 8}), Error);
 }
 
-// Packets, where a frame that is none counts as an empty one.
+// Returns packets; an invalid frame counts as an empty one.
 std::vector<std::vector<std::byte>> framesIn(const std::vector<std::byte>& line,
                                              std::size_t piece) {
   std::vector<std::vector<std::byte>> packets;
@@ -192,7 +265,7 @@ std::vector<std::vector<std::byte>> framesIn(const std::vector<std::byte>& line,
   return packets;
 }
 
-TEST(ProbeFrames, GiveBackAnyBytesFromAnyPieces) {
+TEST(ProbeFrames, RestoreAnyBytesFromAnyPieces) {
   std::mt19937 random(11);
   std::vector<std::byte> line;
   std::vector<std::vector<std::byte>> sent;
@@ -208,10 +281,10 @@ TEST(ProbeFrames, GiveBackAnyBytesFromAnyPieces) {
     sent.emplace_back(bytesOf(raw).begin(), bytesOf(raw).end());
   }
   for (const std::size_t piece : {1u, 7u, 66u, 4096u}) EXPECT_EQ(framesIn(line, piece), sent);
-  // Joined in the middle, the first is passed over in silence.
+  // The first, partial packet of a joined line is skipped without an error.
   const std::vector<std::byte> joined(line.begin() + 30, line.end());
   EXPECT_EQ(framesIn(joined, 13), std::vector(sent.begin() + 1, sent.end()));
-  // A byte that is lost or comes on top costs its packet, which is counted, and no other.
+  // A lost or an extra byte costs one packet, which is counted, and no other.
   for (const bool more : {false, true}) {
     std::vector<std::byte> spoilt = line;
     const auto at = spoilt.begin() + 66 * 100 + 9;

@@ -1,9 +1,10 @@
-// A probe's stream over an emulated bus in simulated time, and over a serial line: nothing is lost
-// here, and whatever is lost before is counted.
+// A probe's stream over an emulated bus in simulated time, and over a serial line: the reader loses
+// nothing and counts earlier losses.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fcntl.h>
+#include <termios.h>
 #include <thread>
 #include <unistd.h>
 
@@ -61,9 +62,9 @@ TEST(ProbeStream, IsReadInItsUnits) {
   EXPECT_FALSE(health.skew) << "too early to say";
 }
 
-// The figures of the protocol's promise: 4 kHz, one hour, one packet of a thousand lost on the way,
+// The figures that the protocol promises: 4 kHz, one hour, one packet of a thousand lost,
 // a clock 80 ppm fast, delays of 125 us and some more on each packet.
-TEST(ProbeStream, OfAnHourLosesNothingHereCountsAllThatWasLostAndKnowsItsClock) {
+TEST(ProbeStream, CountsAllLossesAndTracksTheClockForAnHour) {
   OnBus on({.rate = 4000, .skew = 80e-6, .loss = 1e-3, .describe_every = 0},
            {.now = 3, .jitter = 200e-6});
   const auto source = on.open();
@@ -109,17 +110,17 @@ TEST(ProbeStream, CorruptPacketsAreCountedOnceAndAmongTheLost) {
   std::vector<ProbeSample> samples;
   while (on.bus.now < 30) ASSERT_TRUE(source->read(samples));
   const ProbeHealth health = source->health().value();
-  EXPECT_GT(on.probe.spoilt(), 200u);
-  EXPECT_LE(on.probe.spoilt() - health.corrupt, 16u);
+  EXPECT_GT(on.probe.corrupted(), 200u);
+  EXPECT_LE(on.probe.corrupted() - health.corrupt, 16u);
   EXPECT_LE(health.corrupt - health.lost_packets, 16u);
   EXPECT_EQ(samples.size(), 4 * health.packets);
 }
 
-// Packets of one sample a millisecond, numbered as told.
+// Packets of one sample a millisecond with given numbers.
 class Numbered {
  public:
   Numbered() {
-    for (unsigned part = 0; part < kProbeParts; ++part)
+    for (unsigned part = 0; part < probe_.parts(); ++part)
       decoder.take(probe_.describe(part), 0, samples);
   }
   void send(std::uint32_t packet, std::uint64_t ms) {
@@ -152,7 +153,7 @@ TEST(ProbeStream, TakesEachNumberOnceAndInOrder) {
   EXPECT_NEAR(stream.samples.back().t, 0.005, 1e-12);
 }
 
-TEST(ProbeStream, NumbersGoRoundTheCorner) {
+TEST(ProbeStream, SequenceNumbersWrapAround) {
   Numbered stream;
   for (const std::uint32_t ahead : {0u, 1u, 3u, 4u}) stream.send(0xfffffffeu + ahead, 100 + ahead);
   EXPECT_EQ(stream.decoder.health().lost_packets, 1u);
@@ -160,7 +161,7 @@ TEST(ProbeStream, NumbersGoRoundTheCorner) {
   EXPECT_EQ(stream.samples.size(), 4u);
 }
 
-TEST(ProbeStream, GoesOnInTimeWhereTheProbeStartsAnew) {
+TEST(ProbeStream, TimeContinuesIfTheProbeRestarts) {
   Numbered stream;
   for (std::uint32_t i = 0; i < 50; ++i) stream.send(i, 7000 + i);
   for (std::uint32_t i = 0; i < 50; ++i) stream.send(i, 2 + i);
@@ -171,17 +172,17 @@ TEST(ProbeStream, GoesOnInTimeWhereTheProbeStartsAnew) {
     EXPECT_NEAR(stream.samples[i].t - stream.samples[i - 1].t, 1e-3, 1e-9) << i;
 }
 
-TEST(ProbeStream, StartsAnewAlsoWhereItsFirstPacketsAreLost) {
+TEST(ProbeStream, DetectsARestartWhoseFirstPacketsAreLost) {
   Numbered stream;
   for (std::uint32_t i = 0; i < 250; ++i) stream.send(i, 2 + i);
-  for (std::uint32_t i = 1; i < 200; ++i) stream.send(i, 2 + i); // all of them were there
+  for (std::uint32_t i = 1; i < 200; ++i) stream.send(i, 2 + i); // all of them arrived
   EXPECT_EQ(stream.decoder.health().restarts, 1u);
   EXPECT_EQ(stream.decoder.health().repeated, 0u);
   ASSERT_EQ(stream.samples.size(), 449u);
   for (std::size_t i = 1; i < 449; ++i) EXPECT_GT(stream.samples[i].t, stream.samples[i - 1].t);
 }
 
-TEST(ProbeStream, AFewThatAreSentAgainAreNoNewStart) {
+TEST(ProbeStream, RepeatedPacketsAreNoRestart) {
   Numbered stream;
   for (std::uint32_t i = 0; i < 50; ++i) stream.send(i, 2 + i);
   for (std::uint32_t i = 43; i < 60; ++i) stream.send(i, 2 + i);
@@ -190,18 +191,61 @@ TEST(ProbeStream, AFewThatAreSentAgainAreNoNewStart) {
   EXPECT_EQ(stream.samples.size(), 60u);
 }
 
-TEST(ProbeStream, ThatIsNeverDescribedSaysSo) {
+TEST(ProbeStream, ReportsAMissingDescription) {
   ProbeDecoder decoder;
   EmulatedProbe probe({.rate = 4000, .samples_per_packet = 1, .describe_every = 0});
   std::vector<ProbeSample> samples;
   const std::string cause = causeOf([&] {
     probe.until(10, [&](ProbePacket packet, double sent) { decoder.take(packet, sent, samples); });
   });
-  EXPECT_NE(cause.find("never says what they mean"), std::string::npos);
+  EXPECT_NE(cause.find("without their description"), std::string::npos);
   EXPECT_TRUE(samples.empty());
 }
 
-TEST(UsbProbe, SaysInOneLineWhatIsWrong) {
+// The same stream with and without a gyroscope: force and accelerations are equal.
+TEST(ProbeStream, ContainsTheGyroscopeOfAProbeThatHasOne) {
+  OnBus on({.rate = 1000, .samples_per_packet = 2, .gyroscope = true});
+  OnBus without({.rate = 1000, .samples_per_packet = 2});
+  const auto source = on.open(), plain = without.open();
+  std::vector<ProbeSample> samples, others;
+  std::vector<RateSample> rates, none;
+  while (samples.size() < 1000) ASSERT_TRUE(source->read(samples, &rates));
+  while (others.size() < 1000) ASSERT_TRUE(plain->read(others, &none));
+  EXPECT_TRUE(none.empty());
+  ASSERT_EQ(rates.size(), samples.size());
+  // The probe's clock began before its stream.
+  const double before = std::asin(rates[0].rate.z() / 2) / (2 * std::numbers::pi);
+  for (std::size_t i = 0; i < 1000; ++i) {
+    ASSERT_EQ(rates[i].t, samples[i].t);
+    ASSERT_EQ(samples[i].t, others[i].t);
+    ASSERT_EQ(samples[i].force, others[i].force);
+    ASSERT_EQ(samples[i].acceleration, others[i].acceleration);
+    ASSERT_EQ(rates[i].rate.head<2>().norm(), 0);
+    const double turning = 2 * std::sin(2 * std::numbers::pi * (samples[i].t + before));
+    ASSERT_NEAR(rates[i].rate.z(), turning, 2e-3);
+  }
+}
+
+TEST(ProbeStream, ReportsAGyroscopeThatComesOrGoes) {
+  for (const bool described : {false, true}) {
+    EmulatedProbe with({.rate = 1000, .gyroscope = true}), without({.rate = 1000});
+    ProbeDecoder decoder;
+    std::vector<ProbeSample> samples;
+    const auto send = [&](EmulatedProbe& probe, double t) {
+      probe.until(t, [&](ProbePacket packet, double sent) { decoder.take(packet, sent, samples); });
+    };
+    send(without, 2);
+    ASSERT_GT(samples.size(), 1000u);
+    for (unsigned part = 0; described && part < with.parts(); ++part)
+      decoder.take(with.describe(part), 3, samples);
+    EXPECT_NE(causeOf([&] { send(with, 4); })
+                  .find(described ? "started again with a gyroscope: record again"
+                                  : "describes 5 channels and sends samples of 8"),
+              std::string::npos);
+  }
+}
+
+TEST(UsbProbe, ReportsFaultsInOneLine) {
   const auto opening = [](ProbeBus with) {
     OnBus on({}, with);
     return causeOf([&] { (void)on.open(); });
@@ -237,7 +281,7 @@ TEST(UsbProbe, SaysInOneLineWhatIsWrong) {
   EXPECT_LT(mute.bus.now, 2.5);
 }
 
-TEST(UsbProbe, GoesOnAfterAStall) {
+TEST(UsbProbe, ContinuesAfterAStall) {
   OnBus on({}, {.stall_from = 1, .stall_to = 1.5});
   const auto source = on.open();
   std::vector<ProbeSample> samples;
@@ -249,7 +293,7 @@ TEST(UsbProbe, GoesOnAfterAStall) {
   ASSERT_GT(samples.size(), 1000u);
   EXPECT_GT(samples.back().t - samples.front().t, 2.9);
   for (std::size_t i = 1; i < samples.size(); ++i) ASSERT_GT(samples[i].t, samples[i - 1].t) << i;
-  on.bus.stall_from = on.bus.now, on.bus.stall_to = 1e300; // and for good
+  on.bus.stall_from = on.bus.now, on.bus.stall_to = 1e300; // a permanent stall
   EXPECT_EQ(causeOf([&] {
               while (source->read(samples)) {
               }
@@ -257,7 +301,7 @@ TEST(UsbProbe, GoesOnAfterAStall) {
             "the probe P-1 cannot be read: plug it in again, without a hub");
 }
 
-TEST(UsbProbe, StartsAndStopsTheStreamAndEndsWhenTold) {
+TEST(UsbProbe, StartsAndStopsTheStreamOnRequest) {
   OnBus on({});
   {
     const auto source = on.open();
@@ -316,9 +360,9 @@ TEST_F(SerialLine, CarriesPacketsJoinedInTheMiddle) {
             std::string::npos);
 }
 
-// A probe that sent before anybody listened: that is no sample of now.
-TEST_F(SerialLine, TakesNothingThatLayThereBefore) {
-  const Descriptor other(::open(path.c_str(), O_RDWR | O_NOCTTY)); // or nothing would be kept
+// Bytes sent before the port was opened are no current samples.
+TEST_F(SerialLine, IgnoresBytesReceivedBeforeOpening) {
+  const Descriptor other(::open(path.c_str(), O_RDWR | O_NOCTTY)); // keeps the bytes in the line
   EmulatedProbe probe({.rate = 1000, .describe_every = 0.02});
   const auto sendUntil = [&](double t) {
     probe.until(t, [&](ProbePacket packet, double) { send(packet); });
@@ -333,7 +377,32 @@ TEST_F(SerialLine, TakesNothingThatLayThereBefore) {
   EXPECT_EQ(source->health()->lost_packets, 0u);
 }
 
-TEST_F(SerialLine, OfTextSaysWhatToDo) {
+TEST_F(SerialLine, IsSetToTheRateInItsName) {
+  const auto rateOf = [this] {
+    const Descriptor end(::open(path.c_str(), O_RDWR | O_NOCTTY));
+    termios serial{};
+    EXPECT_EQ(::tcgetattr(end.get(), &serial), 0);
+    return ::cfgetispeed(&serial);
+  };
+  for (const char* kind : {"serial:", "stream:"}) {
+    const auto source = openProbe(kind + path + "@460800");
+    EXPECT_EQ(rateOf(), speed_t{B460800});
+    const auto other = openProbe(kind + path + "@115200");
+    EXPECT_EQ(rateOf(), speed_t{B115200});
+    const auto same = openProbe(kind + path);
+    EXPECT_EQ(rateOf(), speed_t{B115200});
+  }
+  EXPECT_NE(causeOf([&] {
+              (void)openProbe("serial:" + path + "@123457");
+            }).find(path + ": 123457 is no rate of serial lines: those are 9600,"),
+            std::string::npos);
+  for (const char* word : {"", "fast", "-9600", "9600.5", "nan"})
+    EXPECT_EQ(causeOf([&] { (void)openProbe("stream:" + path + "@" + word); }),
+              path + "@" + word + ": '" + word +
+                  "' is no rate of a serial line: write bits a second after @");
+}
+
+TEST_F(SerialLine, ReportsTheRemedyIfItCarriesText) {
   const auto source = openProbe("serial:" + path);
   std::thread talks([this] {
     for (int i = 0; i < 400; ++i) {

@@ -11,7 +11,7 @@
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
-#include "acquisition/recording/arrival_clock.h"
+#include "acquisition/recording/min_delay_clock.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "support/fresh_folder.h"
@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::RenderedRig;
 
-// A scan of a few frames, repeated for as long as is asked for.
+// A scan of a few frames, repeated for the requested time.
 class Recordings : public testing::Test {
  protected:
   static constexpr double kRate = 25;
@@ -80,7 +80,7 @@ class Recordings : public testing::Test {
   std::vector<Pose> poses;
 };
 
-TEST_F(Recordings, HoldWhatASourceGaveWithItsTimes) {
+TEST_F(Recordings, HoldTheDataOfASourceWithItsTimes) {
   makeScan(1);
   const auto recorder = replaying();
   const RecordingState state = finished(*recorder);
@@ -100,7 +100,7 @@ TEST_F(Recordings, HoldWhatASourceGaveWithItsTimes) {
   ASSERT_GE(samples.size(), 480u); // it ends with the frames
   for (std::size_t i = 1; i < samples.size(); ++i)
     EXPECT_NEAR(samples[i].t - samples[i - 1].t, 0.002, 0.002);
-  // Both clocks began together.
+  // Both clocks start together.
   EXPECT_NEAR(frames[0].t, samples[0].t, 0.05);
   for (const CameraPose& pose : readPoses(made / "poses.tum").values) {
     const auto at = std::lround((pose.t - frames[0].t) * kRate) % 3;
@@ -109,7 +109,7 @@ TEST_F(Recordings, HoldWhatASourceGaveWithItsTimes) {
   EXPECT_EQ(readFile(made / "camera.yml"), readFile(scan / "camera.yml"));
 }
 
-TEST_F(Recordings, OfFilesWaitForTheTrackerAndKeepTheirTimes) {
+TEST_F(Recordings, WaitForTheTrackerAndKeepTheTimesOfFiles) {
   makeScan(2);
   Recorder recorder(openFrames(scan.string(), 0), openProbe((scan / "probe.csv").string()),
                     setup());
@@ -127,6 +127,24 @@ TEST_F(Recordings, OfFilesWaitForTheTrackerAndKeepTheirTimes) {
   EXPECT_EQ(framesOf(made, 0)[49].t, framesOf(scan, 0)[49].t);
 }
 
+TEST_F(Recordings, HoldTheGyroscopeOfAProbeThatHasOne) {
+  makeScan(1);
+  std::string table = probeHeader(true);
+  for (int i = 0; i < 500; ++i) {
+    const RateSample rate{100 + 0.002 * i, Vec3(0.1, -0.2, 1e-3 * i)};
+    table += probeRow({rate.t, 0.25, {0, 9.8, 0, 9.8}}, &rate);
+  }
+  writeFileAtomically(scan / "probe.csv", table);
+  Recorder recorder(openFrames(scan.string(), 0), openProbe((scan / "probe.csv").string()),
+                    setup());
+  EXPECT_EQ(finished(recorder).error, "");
+  std::vector<RateSample> rates;
+  const auto kept = readProbeStream(made / "probe.csv", nullptr, &rates).values;
+  ASSERT_EQ(kept.size(), 500u);
+  ASSERT_EQ(rates.size(), 500u);
+  for (int i = 0; i < 500; ++i) EXPECT_EQ(rates[index(i)].rate, Vec3(0.1, -0.2, 1e-3 * i));
+}
+
 TEST_F(Recordings, PauseWithoutRenumbering) {
   makeScan(1.6);
   const auto recorder = replaying();
@@ -136,10 +154,10 @@ TEST_F(Recordings, PauseWithoutRenumbering) {
   const RecordingState held = recorder->poll().state;
   EXPECT_TRUE(held.paused);
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  const RecordingNews meanwhile = recorder->poll();
+  const RecordingUpdate meanwhile = recorder->poll();
   EXPECT_EQ(meanwhile.state.frames, held.frames);
   EXPECT_EQ(meanwhile.state.samples, held.samples);
-  EXPECT_FALSE(meanwhile.samples.empty()); // but it is seen
+  EXPECT_FALSE(meanwhile.samples.empty()); // the live view continues
   recorder->resume();
   const RecordingState state = finished(*recorder);
   EXPECT_EQ(state.dropouts, 0u);
@@ -155,7 +173,7 @@ TEST_F(Recordings, PauseWithoutRenumbering) {
 TEST_F(Recordings, ShowTheNewestFrameWithItsMarkers) {
   makeScan(1);
   const auto recorder = replaying();
-  RecordingNews news;
+  RecordingUpdate news;
   for (int i = 0; i < 200 && !news.frame; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     news = recorder->poll();
@@ -188,7 +206,7 @@ TEST_F(Recordings, EndWithFramesOfAnotherSize) {
     writeGrey(scan / "frames" / frame, {320, 240, std::vector<std::uint8_t>(320 * 240, 9)});
   };
   spoil("000006.png");
-  // On a busy machine this frame may be the first that is seen at all.
+  // On a busy machine this frame may be the first one that is read.
   std::size_t came = 0;
   for (int time = 0; time < 20 && came == 0; ++time) {
     EXPECT_FALSE(fs::exists(made));
@@ -208,7 +226,7 @@ TEST_F(Recordings, EndWithFramesOfAnotherSize) {
   EXPECT_FALSE(fs::exists(made)) << "nothing came that would be lost";
 }
 
-// Of a process that records and is killed, or whose disk is full, at some moment.
+// A process that records and is killed, or whose disk is full, at some moment.
 class RecordingChild : public Recordings {
  protected:
   template <class Prepare> pid_t started(const Prepare& prepare) const {
@@ -225,7 +243,7 @@ class RecordingChild : public Recordings {
     return status;
   }
   void isWhole(const fs::path& into) const {
-    // Pictures are on disk as they come: how far it had come.
+    // Pictures are written as they arrive and show the progress.
     std::size_t pictures = 0;
     for (const auto& file : fs::directory_iterator(into / "frames"))
       pictures += file.path().extension() == ".pgm";
@@ -234,7 +252,7 @@ class RecordingChild : public Recordings {
     const auto samples = readProbeStream(into / "probe.csv").values;
     EXPECT_GT(samples.back().t, frames[0].t + static_cast<double>(pictures) / kRate - 1);
     EXPECT_GT(readPoses(into / "poses.tum").values.size(), 5u);
-    // All that is listed is whole.
+    // Every listed file is complete.
     Progress progress;
     const TrackedFrames found =
         trackFrames(*openFrames(into.string(), 0), rig.camera, rig.markers, {}, progress);
@@ -243,7 +261,7 @@ class RecordingChild : public Recordings {
   }
 };
 
-TEST_F(RecordingChild, KilledAtAnyMomentLeavesAScanThatLacksLessThanASecond) {
+TEST_F(RecordingChild, LosesLessThanASecondIfKilled) {
   makeScan(4);
   std::mt19937 random(5);
   constexpr int kTogether = 3;
@@ -254,7 +272,7 @@ TEST_F(RecordingChild, KilledAtAnyMomentLeavesAScanThatLacksLessThanASecond) {
       const pid_t child = started([] {});
       children.emplace_back(made, child);
     }
-    // The last to begin has lasted for a while, too.
+    // The last recording has also run for a while.
     const auto has = [&] { return fs::exists(made / "frames" / "000020.pgm"); };
     for (int i = 0; i < 1000 && !has(); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -268,9 +286,9 @@ TEST_F(RecordingChild, KilledAtAnyMomentLeavesAScanThatLacksLessThanASecond) {
   }
 }
 
-TEST_F(RecordingChild, WhoseDiskIsFullSaysSoAndKeepsWhatItWrote) {
+TEST_F(RecordingChild, ReportsAFullDiskAndKeepsItsData) {
   makeScan(4);
-  // So small that the probe's table is the first file to meet the limit.
+  // Frames are so small that the probe's table is the first file to reach the limit.
   Camera small = rig.camera;
   small.width = 64, small.height = 48;
   writeFileAtomically(scan / "camera.yml", cameraText(small));
@@ -284,15 +302,15 @@ TEST_F(RecordingChild, WhoseDiskIsFullSaysSoAndKeepsWhatItWrote) {
   });
   const int status = statusOf(child);
   ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 7); // said, and at once: it did not go on to the end
+  EXPECT_EQ(WEXITSTATUS(status), 7); // reported at once, before the end of the scan
   const auto samples = readProbeStream(made / "probe.csv").values;
   EXPECT_GT(samples.size(), 250u);
   EXPECT_LT(samples.size(), 600u); // 385 were, of 2000
   EXPECT_GT(framesOf(made, 0).size(), 10u);
 }
 
-TEST(ArrivalClock, KeepsTheSourcesEvenStepsAtTheLeastDelay) {
-  ArrivalClock clock;
+TEST(MinDelayClock, KeepsTheEvenStepsOfTheSourceAtMinimumDelay) {
+  MinDelayClock clock;
   std::mt19937 random(3);
   std::exponential_distribution<double> late(200); // 5 ms on average
   double worst = 0, last = -1;

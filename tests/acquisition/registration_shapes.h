@@ -1,4 +1,4 @@
-// Meshes and paths with a known place, for what registers one to the other.
+// Meshes and paths with a known pose, for tests of registration.
 #pragma once
 
 #include <cmath>
@@ -61,7 +61,7 @@ class Draw {
   }
   Vec3 direction() { return normal(1).normalized(); }
 
-  // A curve about the body, and where it meets the surface.
+  // A curve around the body, projected onto the surface.
   std::vector<Vec3> pathOn(const SurfaceTarget& target, int n) {
     const Box3 box = bounds(target.mesh());
     const Vec3 half = box.sizes() / 2;
@@ -77,7 +77,7 @@ class Draw {
     return path;
   }
 
-  // From near the truth: the path turned about its middle, then shifted.
+  // Returns a start near the truth: the path rotated about its centre, then shifted.
   Pose off(const std::vector<Vec3>& path, double degrees, double metres) {
     Vec3 middle = Vec3::Zero();
     for (const Vec3& p : path) middle += p / static_cast<double>(path.size());
@@ -92,7 +92,7 @@ class Draw {
   std::mt19937 random_;
 };
 
-// How far points are taken from where they belong, rms [m].
+// Distance of the moved points from their true positions, rms [m].
 inline double missOf(const Pose& mesh_from_path, const std::vector<Vec3>& truth) {
   double squares = 0;
   for (const Vec3& p : truth) squares += (mesh_from_path * p - p).squaredNorm();

@@ -1,13 +1,16 @@
 #include "acquisition/registration/register_path.h"
 
+#include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <random>
 
 #include <gtest/gtest.h>
 
-#include "acquisition/registration/closest_point_loop.h"
+#include "acquisition/registration/iterated_closest_points.h"
 #include "acquisition/registration_shapes.h"
 #include "core/decompose.h"
+#include "core/error.h"
 
 namespace patina {
 namespace {
@@ -26,7 +29,18 @@ Registration registered(const SurfaceTarget& target, const std::vector<Vec3>& pa
   return registerPath(target, path, start, options, progress);
 }
 
-TEST(Registration, WithoutNoiseThePathLandsWhereItWas) {
+TEST(SurfaceTarget, RefusesATipLargerThanTheMesh) {
+  EXPECT_NO_THROW(SurfaceTarget(icosphere(0.04, 4), 0.02, true));
+  try {
+    const SurfaceTarget target(icosphere(0.04, 4), 0.5, true);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("is larger than the mesh"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Registration, IsExactWithoutNoise) {
   const SurfaceTarget target(test::lumpy(), 0);
   Draw draw(1);
   for (int round = 0; round < 20; ++round) {
@@ -38,27 +52,27 @@ TEST(Registration, WithoutNoiseThePathLandsWhereItWas) {
   }
 }
 
-// Ten seconds of standing on a ridge say no more of where the path lies than a second.
-TEST(Registration, StandingCountsOnceWherePlacesDo) {
+// Ten seconds at rest on a ridge say no more about the pose than one second.
+TEST(Registration, RestingSamplesCountOnceAfterDownsampling) {
   const SurfaceTarget target(test::lumpy(), 0);
   Draw draw(7);
   auto path = draw.pathOn(target, 300);
   const auto truth = path;
-  const Miss under = target.miss(truth[40]);
+  const SurfaceResidual under = target.residual(truth[40]);
   const Vec3 ridge = truth[40] + 0.3e-3 * faceNormal(target.mesh(), index(under.foot.face));
   for (int i = 0; i < 5000; ++i) path.push_back(ridge);
   RegistrationOptions options;
   options.robust = false;
   const double each =
       missOf(registered(target, path, Pose::Identity(), options).mesh_from_path, truth);
-  options.place = 0.1e-3;
+  options.sample_spacing = 0.1e-3;
   const Registration found = registered(target, path, Pose::Identity(), options);
   const double once = missOf(found.mesh_from_path, truth);
   std::printf("each sample %.4f mm, each place %.4f mm\n", 1e3 * each, 1e3 * once);
   EXPECT_LT(once, 0.1 * each);
-  ASSERT_EQ(found.misses.size(), path.size());
-  EXPECT_EQ(found.counts.size(), path.size());
-  EXPECT_NEAR(std::abs(found.misses.back().distance), 0.3e-3, 0.05e-3);
+  ASSERT_EQ(found.residuals.size(), path.size());
+  EXPECT_EQ(found.inliers.size(), path.size());
+  EXPECT_NEAR(std::abs(found.residuals.back().distance), 0.3e-3, 0.05e-3);
 }
 
 // T-A10b, F11
@@ -77,29 +91,29 @@ TEST(Registration, ConvergesInSixStepsWhereTheLoopCreeps) {
   few.iterations = 6;
   EXPECT_LT(missOf(fitPath(target, truth, start, few).mesh_from_path, truth), 1e-10);
 
-  LoopOptions creeping;
+  IcpOptions creeping;
   creeping.iterations = 50;
-  creeping.still = 0;
-  const LoopFit before = closestPointLoop(target, truth, start, creeping);
+  creeping.tolerance = 0;
+  const IcpResult before = iteratedClosestPoints(target, truth, start, creeping);
   EXPECT_GT(missOf(before.mesh_from_path, truth), 1e-4);
   creeping.iterations = 51;
-  const LoopFit after = closestPointLoop(target, truth, start, creeping);
-  EXPECT_GT(after.mean_distance / before.mean_distance, 0.95); // which looks like the end
-  EXPECT_GT(after.last_shift + 0.03 * after.last_turn, 1e-6);  // and is not
+  const IcpResult after = iteratedClosestPoints(target, truth, start, creeping);
+  EXPECT_GT(after.mean_distance / before.mean_distance, 0.95);          // looks like convergence
+  EXPECT_GT(after.last_translation + 0.03 * after.last_rotation, 1e-6); // still moves
 }
 
 // T-A10a
-TEST(Registration, TheLoopsMeanSquareNeverGrows) {
+TEST(Registration, MeanSquareOfTheLoopNeverGrows) {
   const SurfaceTarget target(test::lumpy(12), 0);
   Draw draw(2);
   for (int round = 0; round < 1000; ++round) {
     const auto path = noisy(draw.pathOn(target, 12), draw, 5e-4);
     const Pose start = draw.off(path, draw.uniform(0, 60), draw.uniform(0, 0.03));
-    LoopOptions one;
+    IcpOptions one;
     one.iterations = 1;
-    LoopFit fit = closestPointLoop(target, path, start, one);
+    IcpResult fit = iteratedClosestPoints(target, path, start, one);
     for (int step = 0; step < 8; ++step) {
-      const LoopFit next = closestPointLoop(target, path, fit.mesh_from_path, one);
+      const IcpResult next = iteratedClosestPoints(target, path, fit.mesh_from_path, one);
       EXPECT_LE(next.mean_square, fit.mean_square * (1 + 1e-12));
       fit = next;
     }
@@ -107,7 +121,7 @@ TEST(Registration, TheLoopsMeanSquareNeverGrows) {
 }
 
 // T-A10d
-TEST(Registration, FindsItsPlaceFromFarAway) {
+TEST(Registration, FindsThePoseFromFarAway) {
   const SurfaceTarget target(test::lumpy(), 0);
   for (const double noise : {0.0, 5e-4}) {
     Draw draw(3);
@@ -125,7 +139,7 @@ TEST(Registration, FindsItsPlaceFromFarAway) {
   }
 }
 
-TEST(Registration, AFifthOfThePointsMayBeElsewhere) {
+TEST(Registration, ToleratesOneFifthOutliers) {
   const SurfaceTarget target(test::lumpy(), 0);
   for (const double degrees : {15, 30}) {
     Draw draw(4);
@@ -147,7 +161,7 @@ TEST(Registration, AFifthOfThePointsMayBeElsewhere) {
       for (std::size_t i = 0; i < path.size(); ++i)
         if (strayed[i] && target.tree().closestPoint(path[i]).distance > 4e-3) {
           ++far_ones;
-          taken += fit.counts[i];
+          taken += fit.inliers[i];
         }
       EXPECT_LE(taken, far_ones / 20);
     }
@@ -157,18 +171,18 @@ TEST(Registration, AFifthOfThePointsMayBeElsewhere) {
 }
 
 // T-A10c
-TEST(Registration, SaysWhatTheSurfaceDoesNotSee) {
+TEST(Registration, ReportsUnobservableMotions) {
   const auto kinds = [](const Registration& fit) {
     std::pair<int, int> count{0, 0}; // slides, turns
-    for (const FreeMotion& motion : fit.free)
-      ++(motion.kind == FreeMotion::Kind::slide ? count.first : count.second);
+    for (const UnobservableMotion& motion : fit.free)
+      ++(motion.kind == UnobservableMotion::Kind::translation ? count.first : count.second);
     return count;
   };
   for (const double noise : {0.0, 3e-4}) {
     Draw draw(5);
     RegistrationOptions options;
     options.noise = noise;
-    { // a plane: two slides and a turn about its normal
+    { // a plane: two translations and a rotation about its normal
       const SurfaceTarget target(sheet(0.2, 0.2, 20), 0);
       std::vector<Vec3> path;
       for (int i = 0; i < 300; ++i)
@@ -176,19 +190,19 @@ TEST(Registration, SaysWhatTheSurfaceDoesNotSee) {
       const Pose start = draw.off(path, 10, 5e-3);
       const Registration fit = registered(target, noisy(path, draw, noise), start, options);
       EXPECT_EQ(kinds(fit), std::pair(2, 1));
-      for (const FreeMotion& motion : fit.free) {
+      for (const UnobservableMotion& motion : fit.free) {
         const double up = std::abs(motion.axis.z());
-        EXPECT_NEAR(up, motion.kind == FreeMotion::Kind::turn ? 1 : 0, 0.02);
+        EXPECT_NEAR(up, motion.kind == UnobservableMotion::Kind::rotation ? 1 : 0, 0.02);
       }
     }
-    { // a sphere: three turns about its centre
+    { // a sphere: three rotations about its centre
       const SurfaceTarget target(icosphere(0.04, 60), 0);
       const auto truth = draw.pathOn(target, 300);
       const Registration fit =
           registered(target, noisy(truth, draw, noise), draw.off(truth, 15, 0.01), options);
       EXPECT_EQ(kinds(fit), std::pair(0, 3));
-      for (const FreeMotion& motion : fit.free) {
-        EXPECT_LT(motion.through.cross(motion.axis).norm(), 1e-3) << inWords(motion);
+      for (const UnobservableMotion& motion : fit.free) {
+        EXPECT_LT(motion.axis_point.cross(motion.axis).norm(), 1e-3) << inWords(motion);
         EXPECT_LT(std::abs(motion.pitch), 1e-3);
       }
     }
@@ -205,12 +219,12 @@ TEST(Registration, SaysWhatTheSurfaceDoesNotSee) {
       const Registration fit =
           registered(target, noisy(truth, draw, noise), draw.off(truth, 8, 4e-3), options);
       EXPECT_EQ(kinds(fit), std::pair(1, 1));
-      for (const FreeMotion& motion : fit.free) {
+      for (const UnobservableMotion& motion : fit.free) {
         EXPECT_GT(std::abs(motion.axis.z()), 0.999) << inWords(motion);
-        EXPECT_LT(motion.through.head<2>().norm(), 1e-3);
+        EXPECT_LT(motion.axis_point.head<2>().norm(), 1e-3);
       }
     }
-    { // and of a body that has none, nothing
+    { // a body without unobservable motions
       const SurfaceTarget target(test::lumpy(), 0);
       const auto truth = draw.pathOn(target, 300);
       EXPECT_TRUE(registered(target, noisy(truth, draw, noise), draw.off(truth, 10, 5e-3), options)
@@ -219,7 +233,7 @@ TEST(Registration, SaysWhatTheSurfaceDoesNotSee) {
   }
 }
 
-TEST(Registration, WhatIsFreeIsLeftWhereItWas) {
+TEST(Registration, LeavesUnobservableMotionsUnchanged) {
   const SurfaceTarget target(sheet(0.4, 0.4, 20), 0);
   Draw draw(6);
   std::vector<Vec3> path;
@@ -235,22 +249,22 @@ TEST(Registration, WhatIsFreeIsLeftWhereItWas) {
   EXPECT_LT((after - before).head<2>().norm(), 0.2 * std::abs((after - before).z()) + 2e-4);
 }
 
-TEST(Registration, APathInAPlaneIsFlaggedByTheLiteralLoopAndFitted) {
+TEST(Registration, PlanarPathIsFlaggedByTheLiteralLoopAndFitted) {
   const SurfaceTarget target(sheet(0.2, 0.2, 20), 0);
   std::vector<Vec3> path;
   for (int i = 0; i < 100; ++i)
     path.emplace_back(0.04 * std::sin(0.06 * i), 0.03 * std::sin(0.15 * i), 0);
   Pose start = Pose::Identity();
   start.translation().z() = 3e-3;
-  LoopOptions literal;
-  literal.literal = true;
-  const LoopFit fit = closestPointLoop(target, path, start, literal);
+  IcpOptions literal;
+  literal.affine = true;
+  const IcpResult fit = iteratedClosestPoints(target, path, start, literal);
   EXPECT_TRUE(fit.fell_back);
   EXPECT_TRUE(fit.mesh_from_path.matrix().allFinite());
   EXPECT_LT(fit.mean_distance, 1e-9);
 }
 
-TEST(Registration, TheProbesRadiusIsAnOffset) {
+TEST(Registration, ProbeRadiusIsAnOffset) {
   Draw draw(7);
   const double radius = 1.5e-3;
   const SurfaceTarget surface(test::lumpy(), 0), target(test::lumpy(), radius);
@@ -260,20 +274,20 @@ TEST(Registration, TheProbesRadiusIsAnOffset) {
     p += radius * faceNormal(surface.mesh(), index(face));
   }
   const Registration fit = registered(target, truth, draw.off(truth, 10, 4e-3));
-  EXPECT_LT(missOf(fit.mesh_from_path, truth), 2e-5); // facets: the normals are theirs
+  EXPECT_LT(missOf(fit.mesh_from_path, truth), 2e-5); // the normals are those of the facets
   EXPECT_LT(std::abs(fit.mean_distance), 2e-5);
 }
 
-TEST(Registration, APressedPathOnAPlateOfTwelveTrianglesIsFreeToSlide) {
+TEST(Registration, PressedPathOnABoxIsFreeToSlide) {
   const SurfaceTarget target(box(Vec3(0.2, 0.2, 0.005)), 0, true);
   Draw draw(13);
   std::vector<Vec3> path;
   RegistrationOptions options;
   options.noise = 1e-4;
   for (int i = 0; i < 400; ++i) {
-    options.pressed.push_back(3e-4 * (1 + std::sin(0.1 * i)));
+    options.indentations.push_back(3e-4 * (1 + std::sin(0.1 * i)));
     path.push_back(Vec3(0.04 * std::sin(0.02 * i), 0.03 * std::sin(0.05 * i),
-                        0.0025 - options.pressed.back()) +
+                        0.0025 - options.indentations.back()) +
                    draw.normal(options.noise));
   }
   const Registration fit = registered(target, path, draw.off(path, 4, 2e-3), options);
@@ -281,11 +295,11 @@ TEST(Registration, APressedPathOnAPlateOfTwelveTrianglesIsFreeToSlide) {
   EXPECT_EQ(fit.free.size(), 3U);
   EXPECT_NEAR(fit.rms, options.noise, 2e-5);
   EXPECT_TRUE(fit.covariance.allFinite());
-  options.pressed.pop_back();
+  options.indentations.pop_back();
   EXPECT_THROW(registered(target, path, Pose::Identity(), options), std::invalid_argument);
 }
 
-TEST(Registration, ErrorBarsAreThoseOfTheErrors) {
+TEST(Registration, ErrorBarsMatchTheErrors) {
   const SurfaceTarget target(test::lumpy(), 0);
   Draw draw(8);
   const auto truth = draw.pathOn(target, 400);
@@ -302,10 +316,10 @@ TEST(Registration, ErrorBarsAreThoseOfTheErrors) {
     squares += error.dot(SymmetricSolver(fit.covariance).solve(error)) / rounds;
   }
   std::printf("mean squared error in deviations: %.2f of 6\n", squares);
-  EXPECT_NEAR(squares, 6, 1); // of 200 draws, two deviations are .49
+  EXPECT_NEAR(squares, 6, 1); // two deviations are .49 for 200 draws
 }
 
-TEST(Registration, OddPathsAreTakenAsTheyAre) {
+TEST(Registration, IgnoresOrderRepetitionAndGapsOfThePath) {
   const SurfaceTarget target(test::lumpy(20), 0);
   Draw draw(9);
   const auto truth = draw.pathOn(target, 200);
@@ -332,7 +346,7 @@ TEST(Registration, OddPathsAreTakenAsTheyAre) {
   EXPECT_THROW(registered(target, {}, start), std::invalid_argument);
   EXPECT_THROW(registered(target, {Vec3::Constant(std::nan(""))}, start), std::invalid_argument);
 
-  // Far from the origin nothing is lost but the numbers' own last digits.
+  // Far from the origin only the last digits of the coordinates are lost.
   TriangleMesh far_mesh = test::lumpy(20);
   const Vec3 away(1e3, -2e3, 5e2);
   for (Vec3& p : far_mesh.positions) p += away;
@@ -341,6 +355,37 @@ TEST(Registration, OddPathsAreTakenAsTheyAre) {
   there.translation() = away;
   const Pose fit = registered(far_target, truth, there * start).mesh_from_path;
   EXPECT_LT(missOf(there.inverse() * fit, truth), 1e-8);
+}
+
+// A brute-force mean over drawn errors of the pose.
+TEST(PathDeviation, IsTheRmsDisplacementOfThePoints) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  Registration found;
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i) {
+    points.emplace_back(0.03 * std::cos(0.1 * i), 0.01 * std::sin(0.1 * i), 0.004 * std::sin(i));
+    found.middle += points.back() / 60;
+  }
+  for (const Vec3& p : points) {
+    found.residuals.emplace_back();
+    found.residuals.back().at = p;
+  }
+  Mat6 root = Mat6::Zero();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) root(i, j) = (i < 3 ? 0.02 : 2e-4) * normal(random);
+  found.covariance = root * root.transpose();
+  double squares = 0;
+  constexpr int kDraws = 20000;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Vec6 unit;
+    for (int k = 0; k < 6; ++k) unit[k] = normal(random);
+    const Vec6 error = root * unit;
+    for (const Vec3& p : points)
+      squares += (error.head<3>().cross(p - found.middle) + error.tail<3>()).squaredNorm() / 60;
+  }
+  const double truth = std::sqrt(squares / kDraws);
+  EXPECT_NEAR(pathDeviation(found), truth, 0.02 * truth);
 }
 
 } // namespace

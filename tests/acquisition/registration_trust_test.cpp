@@ -1,5 +1,5 @@
-// What a registration says of itself: other places that fit as well, how well it is known, and how
-// far the surface yields.
+// Statements of a registration about itself: alternative poses, precision and the compliance of the
+// surface.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using test::missOf;
 
 constexpr double kTrustNoise = 1e-4; // [m]
 
-// Half a turn about z brings it onto itself.
+// A half turn about z maps the body onto itself.
 TriangleMesh twofold() {
   TriangleMesh mesh = icosphere(1, 40);
   for (Vec3& p : mesh.positions) {
@@ -30,43 +30,43 @@ Registration compared(const SurfaceTarget& target, std::vector<Vec3> path, Draw&
   for (Vec3& p : path) p += draw.normal(kTrustNoise);
   RegistrationOptions options;
   options.noise = kTrustNoise;
-  options.rivals = true;
+  options.alternatives = true;
   Progress progress;
   return registerPath(target, path, draw.off(path, 5, 2e-3), options, progress);
 }
 
 // T-A29
-TEST(Rivals, OfABodyWithTwoAlikeHalvesThereIsOneAndItIsHalfATurnAway) {
+TEST(Rivals, IncludeTheHalfTurnOfASymmetricBody) {
   const SurfaceTarget target(twofold(), 0);
   Draw draw(21);
   for (int round = 0; round < 3; ++round) {
     const auto truth = draw.pathOn(target, 300);
     const Registration found = compared(target, truth, draw);
-    ASSERT_TRUE(found.rivals.has_value());
-    ASSERT_EQ(found.rivals->size(), 1U);
-    const Rival& rival = found.rivals->front();
+    ASSERT_TRUE(found.alternatives.has_value());
+    ASSERT_EQ(found.alternatives->size(), 1U);
+    const AlternativePose& rival = found.alternatives->front();
     const Pose half(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitZ()));
     EXPECT_LT(missOf(half * rival.mesh_from_path, truth), 0.5e-3);
-    EXPECT_NEAR(rival.turn, std::numbers::pi, 0.02);
-    EXPECT_GT(rival.away, 0.02);
+    EXPECT_NEAR(rival.rotation, std::numbers::pi, 0.02);
+    EXPECT_GT(rival.displacement, 0.02);
     EXPECT_NEAR(rival.rms, found.rms, 0.2 * found.rms);
-    EXPECT_NE(inWords(*found.rivals).find("another place"), std::string::npos);
+    EXPECT_NE(inWords(*found.alternatives).find("another place"), std::string::npos);
   }
 }
 
-TEST(Rivals, OfABodyWithoutSymmetryThereAreNoneForALongPath) {
+TEST(Rivals, AreAbsentForALongPathOnAnAsymmetricBody) {
   const SurfaceTarget target(test::lumpy(), 0);
   Draw draw(22);
   for (int round = 0; round < 3; ++round) {
     const auto truth = draw.pathOn(target, 300);
     const Registration found = compared(target, truth, draw);
-    ASSERT_TRUE(found.rivals.has_value());
-    EXPECT_TRUE(found.rivals->empty()) << inWords(*found.rivals);
+    ASSERT_TRUE(found.alternatives.has_value());
+    EXPECT_TRUE(found.alternatives->empty()) << inWords(*found.alternatives);
     EXPECT_LT(missOf(found.mesh_from_path, truth), 0.2e-3);
   }
 }
 
-TEST(Rivals, AFewMillimetresOfPathFitInManyPlaces) {
+TEST(Rivals, AreManyForAFewMillimetresOfPath) {
   const SurfaceTarget target(test::lumpy(), 0);
   Draw draw(23);
   std::vector<Vec3> path;
@@ -74,38 +74,39 @@ TEST(Rivals, AFewMillimetresOfPathFitInManyPlaces) {
     path.push_back(target.tree()
                        .closestPoint(Vec3(0.01 * std::sin(0.03 * i), 0.008 * std::cos(0.05 * i), 1))
                        .point);
-  EXPECT_GT(compared(target, path, draw).rivals->size(), 2U);
+  EXPECT_GT(compared(target, path, draw).alternatives->size(), 2U);
 }
 
-// What a ball does not see is no other place, however far it leads.
-TEST(Rivals, WhatIsFreeIsNone) {
+// Motions that a ball does not determine are no alternative pose, however far they lead.
+TEST(Rivals, ExcludeUnobservableMotions) {
   const SurfaceTarget target(icosphere(0.04, 60), 0);
   Draw draw(24);
   const Registration found = compared(target, draw.pathOn(target, 300), draw);
   EXPECT_EQ(found.free.size(), 3U);
-  EXPECT_TRUE(found.rivals->empty()) << inWords(*found.rivals);
+  EXPECT_TRUE(found.alternatives->empty()) << inWords(*found.alternatives);
 }
 
-TEST(Rivals, AreNotLookedForUnlessAsked) {
+TEST(Rivals, AreSearchedOnlyOnRequest) {
   const SurfaceTarget target(test::lumpy(12), 0);
   Draw draw(25);
   const auto truth = draw.pathOn(target, 100);
   Progress progress;
-  EXPECT_FALSE(registerPath(target, truth, Pose::Identity(), {}, progress).rivals.has_value());
+  EXPECT_FALSE(
+      registerPath(target, truth, Pose::Identity(), {}, progress).alternatives.has_value());
 }
 
-TEST(Rivals, ASampleThatIsLeftOutCostsAsMuchAsOneOnTheVerge) {
-  ErrorLaw law;
+TEST(Rivals, CountARejectedSampleLikeOneAtTheThreshold) {
+  ResidualNoiseModel law;
   law.deviation = 1e-4;
-  law.together = 10;
-  std::vector<Miss> misses(100);
+  law.correlation_length = 10;
+  std::vector<SurfaceResidual> misses(100);
   EXPECT_EQ(costOf(misses, law), 0);
   for (int i = 0; i < 18; ++i) misses[static_cast<std::size_t>(i)].distance = 5e-3;
   EXPECT_NEAR(costOf(misses, law), 18 * 9 / 10., 1e-9);
 }
 
-// On a plate a force that never changes is what a shift along its normal would do.
-TEST(ErrorLaw, AForceThatNeverChangesLeavesErrorBarsFinite) {
+// On a flat face a constant force is equivalent to a shift along the normal.
+TEST(ResidualNoiseModel, ConstantForceLeavesErrorBarsFinite) {
   const SurfaceTarget target(sheet(0.1, 0.08, 20), 0);
   Draw draw(27);
   const auto truth = draw.pathOn(target, 400);
@@ -117,13 +118,13 @@ TEST(ErrorLaw, AForceThatNeverChangesLeavesErrorBarsFinite) {
   Progress progress;
   const Registration fit = registerPath(target, path, Pose::Identity(), options, progress);
   EXPECT_TRUE(fit.covariance.allFinite());
-  EXPECT_NEAR(fit.together, 1, 0.5);
+  EXPECT_NEAR(fit.correlation_length, 1, 0.5);
   EXPECT_NEAR(fit.rms, kTrustNoise, 0.2 * kTrustNoise);
 }
 
-// Errors that are a mean of `width` draws in a row: their integrated autocorrelation is the width,
+// Errors are the mean of `width` draws in a row: their integrated autocorrelation is the width,
 // in closed form. T-A28
-TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
+TEST(ResidualNoiseModel, ErrorBarsHoldUnderCorrelatedErrors) {
   const SurfaceTarget target(test::lumpy(), 0);
   Draw draw(26);
   const auto truth = draw.pathOn(target, 800);
@@ -145,7 +146,7 @@ TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
       Vec6 error;
       error << turn.angle() * turn.axis(), fit.mesh_from_path * fit.middle - fit.middle;
       squares += error.dot(SymmetricSolver(fit.covariance).solve(error)) / 6 / rounds;
-      together += fit.together / rounds;
+      together += fit.correlation_length / rounds;
       alone += fit.rms / rounds;
     }
     std::printf("%d alike: NEES %.2f, worth one %.1f, rms %.4f mm\n", width, squares, together,
@@ -157,10 +158,10 @@ TEST(ErrorLaw, ErrorBarsHoldWhereNeighboursErrAlike) {
   }
 }
 
-// The same without a mesh, where the fit is linear: what the pose errs by, in the metric of its
-// normal equations, over what is stated of it. Blocks are as long as the errors go together,
+// The same without a mesh, where the fit is linear: the error of the pose in the metric of its
+// normal equations over the stated one. Blocks are as long as the correlation of the errors,
 // shorter and longer. T-A28
-TEST(ErrorLaw, StatedVarianceIsThatOfErrorsHoweverBlocksCutThem) {
+TEST(ResidualNoiseModel, StatedVarianceHoldsForAnyBlockBoundaries) {
   for (const int n : {800, 1655, 5327})
     for (const int width : {1, 4, 8, 12, 24, 60}) {
       Draw draw(7);
@@ -180,37 +181,37 @@ TEST(ErrorLaw, StatedVarianceIsThatOfErrorsHoweverBlocksCutThem) {
                               std::sin(3 * u + phase.z()))
                              .normalized();
           points.emplace_back(0.045 * d.x(), 0.035 * d.y(), 0.03 * d.z());
-          const Vec3& p = points.back(); // whose normal its bumps tilt
-          Miss miss;
+          const Vec3& p = points.back(); // a point whose normal is tilted by bumps
+          SurfaceResidual miss;
           miss.direction =
               (Vec3(d.x() / 0.045, d.y() / 0.035, d.z() / 0.03).normalized() +
                0.35 * Vec3(std::sin(150 * p.y()), std::cos(130 * p.z()), std::sin(170 * p.x())))
                   .normalized();
-          fit.misses.push_back(miss);
+          fit.residuals.push_back(miss);
           errors[i] = 0;
           for (int k = 0; k < width; ++k)
             errors[i] += drawn[static_cast<std::size_t>(i + k)] / std::sqrt(width);
         }
-        const MotionScale scale = scaleOf(points, Pose::Identity());
+        const PoseScaling scale = scaleOf(points, Pose::Identity());
         Eigen::MatrixXd design(n, 6);
         for (int i = 0; i < n; ++i) {
           const auto at = static_cast<std::size_t>(i);
-          design.row(i) << ((points[at] - scale.centre).cross(fit.misses[at].direction) /
+          design.row(i) << ((points[at] - scale.centre).cross(fit.residuals[at].direction) /
                             scale.radius)
                                .transpose(),
-              fit.misses[at].direction.transpose();
+              fit.residuals[at].direction.transpose();
         }
         const Mat6 normal = design.transpose() * design;
         const Vec6 off = SymmetricSolver(normal).solve(design.transpose() * errors);
         errors -= design * off;
-        for (int i = 0; i < n; ++i) fit.misses[static_cast<std::size_t>(i)].distance = errors[i];
+        for (int i = 0; i < n; ++i) fit.residuals[static_cast<std::size_t>(i)].distance = errors[i];
         fit.rms = std::sqrt(errors.squaredNorm() / n);
-        const ErrorLaw law = errorLaw(points, fit, 1e-9);
+        const ResidualNoiseModel law = fitNoiseModel(points, fit, 1e-9);
         actual += off.dot(normal * off) / rounds;
         stated +=
             (normal * law.covariance(Eigen::Matrix<double, 6, Eigen::Dynamic>(6, 0))).trace() /
             rounds;
-        together += law.together / rounds;
+        together += law.correlation_length / rounds;
       }
       std::printf("%d points, %d alike: variance %.2f of what is stated, worth one %.1f\n", n,
                   width, actual / stated, together);
@@ -219,8 +220,8 @@ TEST(ErrorLaw, StatedVarianceIsThatOfErrorsHoweverBlocksCutThem) {
     }
 }
 
-// Four samples where one was, with its error: a place is one, and worth one are samples.
-TEST(ErrorLaw, WhatIsWorthOneCountsSamplesWherePlacesWereFitted) {
+// Each sample is repeated four times with its error: the correlation length still counts samples.
+TEST(ResidualNoiseModel, CorrelationLengthCountsSamplesAfterDownsampling) {
   const SurfaceTarget target(test::lumpy(), 0);
   Draw draw(29);
   const auto truth = draw.pathOn(target, 300);
@@ -234,14 +235,14 @@ TEST(ErrorLaw, WhatIsWorthOneCountsSamplesWherePlacesWereFitted) {
   const Pose start = draw.off(truth, 3, 1e-3);
   Progress progress;
   const Registration one = registerPath(target, once, start, options, progress);
-  options.place = 1e-9;
+  options.sample_spacing = 1e-9;
   const Registration four = registerPath(target, often, start, options, progress);
-  EXPECT_NEAR(four.together, 4 * one.together, 1e-9 * four.together);
+  EXPECT_NEAR(four.correlation_length, 4 * one.correlation_length, 1e-9 * four.correlation_length);
   EXPECT_TRUE(four.covariance.isApprox(one.covariance, 1e-6));
 }
 
 // T-A30
-TEST(YieldingFit, FindsHowFarASurfaceGivesWayWithThePose) {
+TEST(ComplianceFit, FindsComplianceTogetherWithThePose) {
   const SurfaceTarget target(test::lumpy(), 0, true);
   Draw draw(27);
   const auto truth = draw.pathOn(target, 400);
@@ -262,7 +263,7 @@ TEST(YieldingFit, FindsHowFarASurfaceGivesWayWithThePose) {
   EXPECT_NEAR(found.compliances.at(0), compliance, 0.1 * compliance);
   EXPECT_NEAR(found.rms, kTrustNoise, 0.2 * kTrustNoise);
   EXPECT_LT(missOf(found.mesh_from_path, truth), 0.1e-3);
-  // Against a hard surface there is nothing to find.
+  // A hard surface has no compliance to find.
   for (std::size_t i = 0; i < truth.size(); ++i) path[i] = truth[i] + draw.normal(kTrustNoise);
   const Registration hard = registerPath(target, path, draw.off(truth, 5, 2e-3), options, progress);
   EXPECT_LT(hard.compliances.at(0), 0.1 * compliance);
@@ -271,9 +272,41 @@ TEST(YieldingFit, FindsHowFarASurfaceGivesWayWithThePose) {
                std::invalid_argument);
 }
 
-// One half is higher where the probe presses more, as if it gave way by more; what was
-// pressed in there is nothing to the place that is found after it.
-TEST(YieldingFit, ForgetsHowFarAnotherPlaceGaveWay) {
+// Squared errors of the compliance over its stated variance, of 60 draws. T-A30
+TEST(ComplianceFit, StatesTheDeviationOfTheCompliance) {
+  const SurfaceTarget target(test::lumpy(), 0, true);
+  Draw draw(29);
+  const auto truth = draw.pathOn(target, 300);
+  const double compliance = 4e-4; // [m/N]
+  RegistrationOptions options;
+  options.noise = kTrustNoise;
+  options.search = false;
+  std::vector<Vec3> pressed;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    options.force.push_back(1 + 0.5 * std::sin(0.07 * static_cast<double>(i)));
+    const std::int32_t face = target.tree().closestPoint(truth[i]).surface.face;
+    pressed.push_back(truth[i] -
+                      compliance * options.force.back() * faceNormal(target.mesh(), index(face)));
+  }
+  double squares = 0;
+  constexpr int kRounds = 60;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Vec3> path = pressed;
+    for (Vec3& p : path) p += draw.normal(kTrustNoise);
+    Progress progress;
+    const Registration found =
+        registerPath(target, path, draw.off(truth, 3, 1e-3), options, progress);
+    const double off = found.compliances.at(0) - compliance;
+    squares += std::pow(off / found.compliance_deviations.at(0), 2) / kRounds;
+  }
+  std::printf("squared errors over stated variance: %.2f\n", squares);
+  EXPECT_GT(squares, 0.5);
+  EXPECT_LT(squares, 2);
+}
+
+// One half is higher where the probe presses harder, which looks like a larger compliance there; it
+// must not affect the pose that is found next.
+TEST(ComplianceFit, ResetsComplianceAtAnotherPose) {
   const double compliance = 4e-4; // [m/N]
   const auto force = [](const Vec3& p) { return 1 + 0.5 * std::sin(300 * p.z()); };
   TriangleMesh mesh = twofold();
@@ -285,8 +318,8 @@ TEST(YieldingFit, ForgetsHowFarAnotherPlaceGaveWay) {
   std::vector<Vec3> truth, path;
   RegistrationOptions options;
   options.noise = kTrustNoise;
-  options.rivals = true;
-  options.around.turn = std::numbers::pi;
+  options.alternatives = true;
+  options.search_options.rotation = std::numbers::pi;
   for (const Vec3& p : draw.pathOn(target, 900)) {
     if (p.x() < 4e-3) continue;
     const std::int32_t face = target.tree().closestPoint(p).surface.face;

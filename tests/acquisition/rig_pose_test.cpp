@@ -27,7 +27,7 @@ Vec6 poseError(const Pose& found, const Pose& known) {
   return error;
 }
 
-TEST(RigPose, FindsTheTipAndSaysHowWell) {
+TEST(RigPose, FindsTheTipAndItsDeviation) {
   const struct {
     Camera camera;
     const char* family;
@@ -43,7 +43,7 @@ TEST(RigPose, FindsTheTipAndSaysHowWell) {
     for (std::uint32_t i = 0; i < 20; ++i) {
       const Pose known = somePose(random, s.distance, 0.8);
       const SeenRig seen = rig.track(rig.renderer.render({known}, {}, i));
-      if (seen.verdict == RigVerdict::ambiguous) continue; // one face seen from before
+      if (seen.verdict == RigVerdict::ambiguous) continue; // one face seen from the front
       ASSERT_EQ(seen.verdict, RigVerdict::seen) << nameOf(seen.verdict);
       ++poses;
       squares += (seen.camera_from_probe * kTip - known * kTip).squaredNorm();
@@ -54,15 +54,15 @@ TEST(RigPose, FindsTheTipAndSaysHowWell) {
                 1e3 * std::sqrt(squares / poses), nees / poses, poses);
     EXPECT_GE(poses, 17);
     EXPECT_LT(std::sqrt(squares / poses), s.most);
-    // Half of its standard deviations at least, twice of them at most.
+    // The stated deviation lies between half and twice the true one.
     EXPECT_GT(nees / poses, 0.25);
     EXPECT_LT(nees / poses, 4);
   }
 }
 
-// Blurred edges are off by what shines through narrow borders, and the covariance knows it.
-TEST(RigPose, KnowsWhatBlurTakesFromIt) {
-  // What the large camera sees of the rig at this distance, without the rest of its picture.
+// Background that shows through narrow borders shifts blurred edges; the covariance covers it.
+TEST(RigPose, CovarianceCoversBlur) {
+  // The part of the large camera's picture that contains the rig at this distance.
   Camera middleOfLarge = test::largeCamera();
   middleOfLarge.width = 800, middleOfLarge.height = 640;
   middleOfLarge.cx -= 560, middleOfLarge.cy -= 220;
@@ -103,13 +103,13 @@ TEST(RigPose, KnowsWhatBlurTakesFromIt) {
   }
 }
 
-// Far away the corners leave two poses; how all faces look tells which.
-TEST(RigPose, FarAwayIsToldByHowTheFacesLook) {
+// Far away the corners leave two poses; the appearance of all faces decides between them.
+TEST(RigPose, AllFacesResolveTheAmbiguityFarAway) {
   const struct {
     Camera camera;
     const char* family;
     double distance, blur;
-    int most; // of 40 frames without a pose
+    int most; // largest number of 40 frames without a pose
   } settings[] = {{test::smallCamera(), "apriltag_36h11", 0.9, 0.6, 4},
                   {test::smallCamera(), "4x4_50", 0.9, 1.2, 8},
                   {test::wideCamera(), "5x5_100", 0.6, 0.9, 4}};
@@ -136,7 +136,7 @@ TEST(RigPose, FarAwayIsToldByHowTheFacesLook) {
   }
 }
 
-// Corners without an image: what the tests below are about is exact.
+// Exact corners without an image, for the tests below.
 std::vector<SeenMarker> seenExactly(const RenderedRig& rig, const Pose& pose,
                                     const std::vector<std::size_t>& which, double noise = 0) {
   std::mt19937 random(9);
@@ -147,10 +147,10 @@ std::vector<SeenMarker> seenExactly(const RenderedRig& rig, const Pose& pose,
     for (std::size_t c = 0; c < 4; ++c) {
       const Vec3 p = pose * rig.markers[i].corners()[c];
       FittedCorner& corner = marker.corner[c];
-      corner.straight = {rig.camera.fx * p.x() / p.z() + rig.camera.cx,
-                         rig.camera.fy * p.y() / p.z() + rig.camera.cy};
-      corner.straight += noise * Vec2(normal(random), normal(random));
-      corner.pixel = corner.straight;
+      corner.undistorted = {rig.camera.fx * p.x() / p.z() + rig.camera.cx,
+                            rig.camera.fy * p.y() / p.z() + rig.camera.cy};
+      corner.undistorted += noise * Vec2(normal(random), normal(random));
+      corner.pixel = corner.undistorted;
       corner.whiten = 20 * Eigen::Matrix2d::Identity(); // 0.05 px
     }
     seen.push_back(marker);
@@ -170,7 +170,7 @@ TEST(RigPose, IsExactWithoutNoise) {
   }
 }
 
-TEST(RigPose, OfOneMarkerFarAwayMayBeEitherAndTheLastPoseDecides) {
+TEST(RigPose, LastPoseResolvesTheAmbiguityOfOneMarkerFarAway) {
   const RenderedRig rig(test::smallCamera(), "4x4_50");
   Pose known = Pose::Identity();
   known.translation() = Vec3(0.02, -0.01, 1.5);
@@ -178,17 +178,18 @@ TEST(RigPose, OfOneMarkerFarAwayMayBeEitherAndTheLastPoseDecides) {
                        .toRotationMatrix();
   const auto corners = seenExactly(rig, known, {0}, 0.05);
   EXPECT_EQ(poseOf(corners, rig.markers, rig.camera).verdict, RigVerdict::ambiguous);
-  Pose lately = known;
-  lately.linear() = known.linear() * Eigen::AngleAxisd(0.05, Vec3::UnitX()).toRotationMatrix();
-  const SeenRig seen = poseOf(corners, rig.markers, rig.camera, &lately);
+  Pose previous_pose = known;
+  previous_pose.linear() =
+      known.linear() * Eigen::AngleAxisd(0.05, Vec3::UnitX()).toRotationMatrix();
+  const SeenRig seen = poseOf(corners, rig.markers, rig.camera, &previous_pose);
   ASSERT_EQ(seen.verdict, RigVerdict::seen);
   EXPECT_LT(poseError(seen.camera_from_probe, known).tail<3>().norm(), 0.15);
-  // A second face leaves no doubt.
+  // A second face resolves the ambiguity.
   EXPECT_EQ(poseOf(seenExactly(rig, known, {0, 3}, 0.05), rig.markers, rig.camera).verdict,
             RigVerdict::seen);
 }
 
-TEST(RigPose, OfOneMarkerCloseByIsFound) {
+TEST(RigPose, IsFoundFromOneMarkerNearby) {
   const RenderedRig rig(test::smallCamera(), "4x4_50");
   std::mt19937 random(3);
   Pose known = somePose(random, 0.25);
@@ -205,15 +206,15 @@ TEST(RigPose, DropsAMarkerThatContradictsTheOthers) {
   std::mt19937 random(3);
   const Pose known = somePose(random);
   auto corners = seenExactly(rig, known, {0, 1, 3}, 0.02);
-  for (FittedCorner& corner : corners[1].corner) corner.straight += Vec2(30, -20);
+  for (FittedCorner& corner : corners[1].corner) corner.undistorted += Vec2(30, -20);
   const SeenRig seen = poseOf(corners, rig.markers, rig.camera);
   ASSERT_EQ(seen.verdict, RigVerdict::seen);
   EXPECT_EQ(seen.dropped, 1u);
   EXPECT_LT((seen.camera_from_probe * kTip - known * kTip).norm(), 1e-3);
 }
 
-// Of a flat rig far away two poses fit, and a wrong marker must not hide the other one.
-TEST(RigPose, AMarkerThatIsDroppedLeavesTheDoubtAboutTheTilt) {
+// Two poses of a flat rig fit far away, and a wrong marker must not hide the second one.
+TEST(RigPose, DroppedMarkerLeavesTheTiltAmbiguous) {
   RenderedRig rig(test::smallCamera(), "4x4_50");
   const RigMarker first = rig.markers[0];
   rig.markers.clear();
@@ -238,7 +239,7 @@ TEST(RigPose, AMarkerThatIsDroppedLeavesTheDoubtAboutTheTilt) {
     auto seen = seenExactly(rig, known, {0, 1, 2, 3, 4, 5});
     for (SeenMarker& marker : seen)
       for (FittedCorner& corner : marker.corner) {
-        corner.straight += 0.15 * Vec2(normal(random), normal(random));
+        corner.undistorted += 0.15 * Vec2(normal(random), normal(random));
         corner.whiten = 1 / 0.15 * Eigen::Matrix2d::Identity();
       }
     const auto turned = [&](const std::vector<SeenMarker>& of, int& told) {
@@ -248,7 +249,7 @@ TEST(RigPose, AMarkerThatIsDroppedLeavesTheDoubtAboutTheTilt) {
       return int{poseError(found.camera_from_probe, known).tail<3>().norm() > 0.2};
     };
     const auto five = std::vector<SeenMarker>(seen.begin() + 1, seen.end());
-    for (FittedCorner& corner : seen[0].corner) corner.straight += Vec2(5, -4);
+    for (FittedCorner& corner : seen[0].corner) corner.undistorted += Vec2(5, -4);
     wrong += turned(seen, with);
     wrong_without += turned(five, without);
   }
@@ -262,7 +263,7 @@ TEST(RigPose, RefusesARigOfAnotherSize) {
   RenderedRig rig(test::smallCamera(), "4x4_50");
   std::mt19937 random(3);
   const auto corners = seenExactly(rig, somePose(random), {0, 1, 3});
-  for (RigMarker& marker : rig.markers) marker.size *= 0.7; // but not their places
+  for (RigMarker& marker : rig.markers) marker.size *= 0.7; // their positions stay
   EXPECT_EQ(poseOf(corners, rig.markers, rig.camera).verdict, RigVerdict::misfit);
 }
 
@@ -275,7 +276,7 @@ TEST(RigPose, NeedsAMarkerOfTheRig) {
   EXPECT_EQ(poseOf(corners, rig.markers, rig.camera).verdict, RigVerdict::repeated);
 }
 
-TEST(RigPose, NamesAMarkerThatIsSeenTwiceWithBothPlaces) {
+TEST(RigPose, NamesBothPositionsOfAMarkerSeenTwice) {
   const RenderedRig rig(test::smallCamera(), "4x4_50");
   std::mt19937 random(3);
   auto corners = seenExactly(rig, somePose(random), {0, 1, 3});
@@ -337,7 +338,7 @@ TEST_F(Frames, BecomePosesAtTheirTimes) {
   }
 }
 
-TEST_F(Frames, ThatAreMissingUnreadableOrEmptyAreGapsWithAReason) {
+TEST_F(Frames, AreGapsWithAReasonIfMissingUnreadableOrEmpty) {
   std::filesystem::remove(fileOf(0));
   writeFileAtomically(fileOf(1), "no picture");
   writeGrey(fileOf(2), {640, 480, std::vector<std::uint8_t>(640 * 480, 100)});
@@ -348,7 +349,7 @@ TEST_F(Frames, ThatAreMissingUnreadableOrEmptyAreGapsWithAReason) {
   EXPECT_NE(found.without[0].why.find("000000.png: does not exist"), std::string::npos);
   EXPECT_NE(found.without[1].why.find("000001.png: cannot be read"), std::string::npos);
   EXPECT_EQ(found.without[2].why, "no marker of the rig");
-  // They are marked in the file, which reads back as if they were not.
+  // The file marks them, and reading ignores the marks.
   writePoses(folder / "poses.tum", found.poses, found.without);
   EXPECT_NE(readFile(folder / "poses.tum").find("# 1 no pose: no marker"), std::string::npos);
   const auto back = readPoses(folder / "poses.tum");
@@ -356,11 +357,11 @@ TEST_F(Frames, ThatAreMissingUnreadableOrEmptyAreGapsWithAReason) {
   EXPECT_EQ(back.values[0].sigma_position, found.poses[0].sigma_position);
 }
 
-TEST_F(Frames, ThatShowAMarkerTwiceNameBothPlaces) {
+TEST_F(Frames, NameBothPositionsOfAMarkerShownTwice) {
   GreyFrame image = rig.renderer.render({poses[0]}, {}, 1);
   const auto seen = findMarkers(image, rig.books, &rig.camera);
   rig.markers = {rig.markers.at(static_cast<std::size_t>(seen.at(0).id))};
-  // The middle half of the picture stands on both sides.
+  // The middle half of the picture appears on both sides.
   const auto whole = image.pixel;
   for (std::size_t i = 0; i < whole.size(); ++i)
     image.pixel[i] = whole[i - i % 640 + 160 + i % 320];
@@ -371,7 +372,7 @@ TEST_F(Frames, ThatShowAMarkerTwiceNameBothPlaces) {
   EXPECT_NE(found.without[0].why.find(" of 4x4_50 is seen twice, at ("), std::string::npos);
 }
 
-TEST_F(Frames, OfAnotherSizeThanTheCalibrationAreRefused) {
+TEST_F(Frames, AreRejectedIfTheirSizeDiffersFromTheCalibration) {
   try {
     (void)tracked(test::largeCamera());
     FAIL();

@@ -49,7 +49,7 @@ TEST(RigidFit, RecoversAnyPoseWithoutNoiseByBothRoutes) {
     const Pose truth = anyPose(random);
     const auto to = moved(from, truth);
     for (const Pose& pose : {fitRigid(from, to), fitAffineThenRigid(from, to).value()}) {
-      EXPECT_LT(angleBetween(pose, truth), 5e-8); // of the cosine's rounding
+      EXPECT_LT(angleBetween(pose, truth), 5e-8); // rounding of the cosine
       EXPECT_LT((pose.linear() - truth.linear()).norm(), 1e-12);
       EXPECT_LT((pose.translation() - truth.translation()).norm(), 1e-12);
       EXPECT_LT(unlikeATurn(pose), 5e-15);
@@ -58,7 +58,7 @@ TEST(RigidFit, RecoversAnyPoseWithoutNoiseByBothRoutes) {
 }
 
 // T-A11b, F10
-TEST(RigidFit, APathInAPlaneIsExactByOneRouteAndRefusedByTheOther) {
+TEST(RigidFit, PlanarPathIsExactByOneRouteAndRejectedByTheOther) {
   std::mt19937 random(2);
   const auto from = cloud(random, 50, Vec3(0.05, 0.03, 0));
   const Pose truth = anyPose(random);
@@ -67,7 +67,7 @@ TEST(RigidFit, APathInAPlaneIsExactByOneRouteAndRefusedByTheOther) {
   EXPECT_FALSE(fitAffineThenRigid(from, to).has_value());
 }
 
-// T-A11c: noise on a plane asks for a mirror image.
+// T-A11c: noise on a plane may make a mirror image the best affine fit.
 TEST(RigidFit, NeverReflects) {
   std::mt19937 random(3);
   int mirrored = 0;
@@ -91,7 +91,7 @@ TEST(RigidFit, NeverReflects) {
   EXPECT_GT(mirrored, 300);
 }
 
-TEST(RigidFit, StaysATurnAfterTenThousandSteps) {
+TEST(RigidFit, StaysARotationAfterTenThousandSteps) {
   std::mt19937 random(4);
   const auto from = cloud(random, 10, Vec3::Constant(0.03));
   const Pose step = anyPose(random);
@@ -116,7 +116,7 @@ TEST(RigidFit, ErrorHalvesWithFourTimesThePoints) {
       errors.push_back(angleBetween(fitRigid(from, to), truth));
     }
     median.push_back(percentiles(errors).p50);
-    // Each axis sees the spread of the two others.
+    // Each axis depends on the spread of the two others.
     const double expected = 5e-4 / (0.03 * std::sqrt(2.0 * static_cast<double>(n)));
     EXPECT_NEAR(median.back() / (expected * 1.538), 1, 0.1);
   }
@@ -124,7 +124,7 @@ TEST(RigidFit, ErrorHalvesWithFourTimesThePoints) {
   EXPECT_NEAR(median[1] / median[2], 2, 0.2);
 }
 
-TEST(RigidFit, AsksForPairs) {
+TEST(RigidFit, RejectsUnpairedPoints) {
   EXPECT_THROW(fitRigid({}, {}), std::invalid_argument);
   EXPECT_THROW(fitRigid({Vec3::Zero()}, {}), std::invalid_argument);
   EXPECT_THROW(fitAffineThenRigid({}, {}), std::invalid_argument);

@@ -1,5 +1,5 @@
 #include "acquisition/files/frame_files.h"
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class ScanFiles : public testing::Test {
     std::ofstream(folder / "file") << text;
     return folder / "file";
   }
-  // What a reader says of a text: "file:LINE: cause" without the folder.
+  // Returns the reader's message on a text: "file:LINE: cause" without the folder.
   template <class Read> std::string refusal(const Read& read, const std::string& text) const {
     try {
       (void)read(written(text));
@@ -55,7 +55,7 @@ TEST_F(ScanFiles, PosesReadBackBitForBit) {
   }
 }
 
-TEST_F(ScanFiles, PosesMayTellTheirDeviations) {
+TEST_F(ScanFiles, PosesMayHaveDeviations) {
   const auto file = readPoses(written("\xEF\xBB\xBF"
                                       "0 1 2 3 0 0 0 1 # one\n\n0.1 1 2 3 0 0 0 -1 1e-4 0.002\n"),
                               {0.5e-3, 0.01});
@@ -67,15 +67,24 @@ TEST_F(ScanFiles, PosesMayTellTheirDeviations) {
   EXPECT_EQ(file.lines[1], 3u);
 }
 
-TEST_F(ScanFiles, PosesThatAreNoneAreRefusedWithTheirLine) {
+TEST_F(ScanFiles, PosesTellADoubtOfTheirRig) {
+  const std::string doubt = "marker 3 lies 0.4 mm off";
+  std::vector<std::string> warnings;
+  const auto doubted = parsePoses(posesText({CameraPose()}, {}, doubt), "p.tum", {}, &warnings);
+  EXPECT_TRUE(doubted.values[0].rig_doubted);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], "p.tum: of the rig's markers: " + doubt);
+  EXPECT_FALSE(parsePoses(posesText({CameraPose()}, {}), "p.tum").values[0].rig_doubted);
+}
+
+TEST_F(ScanFiles, InvalidPosesAreRejectedWithTheirLine) {
   const auto read = [](const std::filesystem::path& path) { return readPoses(path); };
   const std::string good = "0 1 2 3 0 0 0 1\n";
   EXPECT_EQ(refusal(read, ""), "file: there is no pose in it");
   EXPECT_EQ(refusal(read, "# t x y z\n"), "file: there is no pose in it");
   EXPECT_TRUE(refusal(read, good + "0,1 1 2 3 0 0 0 1\n").starts_with("file:2: decimal commas"));
   EXPECT_EQ(refusal(read, good + "1 1 nan 3 0 0 0 1\n"), "file:2: ty [m] is not a finite number");
-  EXPECT_EQ(refusal(read, good + "1 1 2 1e30 0 0 0 1\n"),
-            "file:2: tz [m] is 1e+30, which nothing measures");
+  EXPECT_EQ(refusal(read, good + "1 1 2 1e30 0 0 0 1\n"), "file:2: tz [m] is 1e+30, out of range");
   EXPECT_TRUE(refusal(read, good + "1 1 x 3 0 0 0 1\n").starts_with("file:2: 'x' is not"));
   EXPECT_TRUE(refusal(read, good + "1 1 2 3 0 0 1\n").starts_with("file:2: 7 numbers where"));
   EXPECT_TRUE(refusal(read, good + "1 1 2 3 0 0 0 1 1\n").starts_with("file:2: 9 numbers where"));
@@ -115,7 +124,7 @@ TEST_F(ScanFiles, PosesMayHaveTheLineEndsOfOldMacs) {
   EXPECT_EQ(file.lines[1], 4u);
 }
 
-TEST_F(ScanFiles, AProbesStreamIsReadAsOtherProgramsWriteIt) {
+TEST_F(ScanFiles, ProbeStreamsOfOtherProgramsAreRead) {
   const std::string text = "battery [V];t [ms];force [mN];a1u [g];a1v [g];a2u [mg];a2v [m/s^2]\r\n"
                            "3,7;0;1500;0;1;1000;2,5\r\n3,7;2,5;1500;0;1;1000;2,5\r\n";
   std::vector<std::string> warnings;
@@ -129,10 +138,37 @@ TEST_F(ScanFiles, AProbesStreamIsReadAsOtherProgramsWriteIt) {
   EXPECT_EQ(warnings, std::vector<std::string>{"probe.csv: column left out: battery [V]"});
   ProbeLines lines("pipe");
   std::vector<ProbeSample> live;
-  for (const char c : text) lines.take({&c, 1}, live);
+  std::vector<RateSample> rates;
+  for (const char c : text) lines.take({&c, 1}, live, &rates);
   lines.end();
+  EXPECT_TRUE(rates.empty());
   ASSERT_EQ(live.size(), 2u);
   EXPECT_EQ(live[1].t, 0.0025);
+}
+
+TEST_F(ScanFiles, LinesOfAGyroscopeReadBackBitForBit) {
+  const std::vector<ProbeSample> samples = {{0, 0.1, {1, 2, 3, 4}}, {0.002, 1, {5, 6, 7, 8}}};
+  const std::vector<RateSample> rates = {{0, {0.1, 0.2, 1. / 3}}, {0.002, {-1, 2, 3}}};
+  writeProbeStream(folder / "probe.csv", samples, rates);
+  const std::string text = readFile(folder / "probe.csv");
+  EXPECT_EQ(probeHeader(true) + probeRow(samples[0], &rates[0]) + probeRow(samples[1], &rates[1]),
+            text);
+  std::vector<RateSample> back;
+  EXPECT_EQ(readProbeStream(folder / "probe.csv", nullptr, &back).values.size(), 2u);
+  ProbeLines lines("pipe");
+  std::vector<ProbeSample> live;
+  std::vector<RateSample> live_rates;
+  for (const char c : text) lines.take({&c, 1}, live, &live_rates);
+  for (const auto& read : {back, live_rates}) {
+    ASSERT_EQ(read.size(), 2u);
+    EXPECT_EQ(read[0].rate, rates[0].rate);
+    EXPECT_EQ(read[1].t, 0.002);
+  }
+  ProbeLines half("pipe");
+  EXPECT_THROW(half.take("t [s],force [N],a1u [m/s^2],a1v [m/s^2],a2u [m/s^2],a2v [m/s^2],"
+                         "wx [rad/s]\n0,0,0,0,0,0,0\n",
+                         live, &live_rates),
+               FileError);
 }
 
 TEST_F(ScanFiles, TablesReadBackBitForBit) {
@@ -161,7 +197,7 @@ TEST_F(ScanFiles, TablesReadBackBitForBit) {
   EXPECT_TRUE(same.orientation.isApprox(sample.orientation, 1e-15));
 }
 
-TEST_F(ScanFiles, TablesThatAreNoneAreRefusedWithTheirLine) {
+TEST_F(ScanFiles, InvalidTablesAreRejectedWithTheirLine) {
   const auto read = [](const std::filesystem::path& path) { return readProbeStream(path); };
   const std::string head = "t [s],force [N],a1u [m/s^2],a1v [m/s^2],a2u [m/s^2],a2v [m/s^2]\n";
   EXPECT_TRUE(refusal(read, "").starts_with("file: is empty"));
@@ -169,21 +205,22 @@ TEST_F(ScanFiles, TablesThatAreNoneAreRefusedWithTheirLine) {
   EXPECT_TRUE(refusal(read, head + "0,0,0,1,0,2,0,3,0,4,0,5\n").starts_with("file:2: decimal"));
   EXPECT_EQ(refusal(read, head + "0,nan,1,2,3,4\n"), "file:2: force [N] is not a finite number");
   EXPECT_EQ(refusal(read, head + "0,-1e300,1,2,3,4\n"),
-            "file:2: force [N] is -1e+300, which nothing measures");
-  EXPECT_EQ(refusal(read, head + "1e12,0,1,2,3,4\n"),
-            "file:2: t [s] is 1e+12, which nothing measures");
+            "file:2: force [N] is -1e+300, out of range");
+  EXPECT_EQ(refusal(read, head + "1e12,0,1,2,3,4\n"), "file:2: t [s] is 1e+12, out of range");
   EXPECT_EQ(refusal(read, head + "1.8e9,0,1,2,3,4\n"), "taken");
   EXPECT_EQ(refusal(read, head + "1,0,1,2,3,4\n0.5,0,1,2,3,4\n"), "file:3: time runs backwards");
   EXPECT_EQ(refusal(read, head + "1,0,1,2,3,4\n1,0,1,2,3,4\n"), "file:3: time repeats");
 }
 
-TEST_F(ScanFiles, ARigReadsBackAndNeedsNoAccelerometers) {
+TEST_F(ScanFiles, RigReadsBackAndNeedsNoAccelerometers) {
   Rig rig;
+  rig.accelerometers = true;
   rig.probe.tip = Vec3(0.001, 0.002, -0.1);
   rig.probe.axes[2].direction = Vec3(0.6, 0.8, 0);
   rig.gravity = Vec3(1, 9, 2);
   rig.probe.force_noise = 0.5;
   rig.force_zero = -0.25;
+  rig.tip_radius = 0.5e-3;
   const Rig back = readRig(written(rigText(rig)));
   EXPECT_TRUE(back.accelerometers);
   EXPECT_EQ(back.probe.tip, rig.probe.tip);
@@ -191,6 +228,7 @@ TEST_F(ScanFiles, ARigReadsBackAndNeedsNoAccelerometers) {
   EXPECT_EQ(back.gravity, rig.gravity);
   EXPECT_EQ(back.probe.force_noise, 0.5);
   EXPECT_EQ(back.force_zero, -0.25);
+  EXPECT_EQ(back.tip_radius, 0.5e-3);
 
   const Rig bare = readRig(written("{\"tip\": [0, 0, -0.1], \"markers\": [{\"id\": 3}]}"));
   EXPECT_FALSE(bare.accelerometers);
@@ -219,7 +257,7 @@ TEST_F(ScanFiles, MarkersReadBack) {
   EXPECT_TRUE(back[0].probe_from_marker.isApprox(marker.probe_from_marker, 1e-12));
 }
 
-TEST_F(ScanFiles, MarkersThatCannotBeAreRefused) {
+TEST_F(ScanFiles, ImpossibleMarkersAreRejected) {
   const auto read = [](const std::filesystem::path& path) { return readMarkers(path); };
   const std::string good = rigText({}, {{"4x4_50", 3, 0.024, Pose::Identity()}});
   const auto with = [&](const std::string& from, const std::string& to) {

@@ -1,4 +1,4 @@
-// Heights and stiffness of a whole scan, against the hand that made it.
+// Heights and stiffness of a whole scan against the simulated hand.
 #include "acquisition/profile/scan_heights.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ Rough roughScan(std::uint32_t seed, double rms, const SimulatedProbe& stream = {
   return rough;
 }
 
-// Less its mean over 0.1 s: what accelerometers can tell.
+// Values minus their mean over 0.1 s, which is the part that accelerometers observe.
 std::vector<double> quick(const std::vector<double>& values) {
   constexpr std::size_t kReach = 25;
   std::vector<double> sums{0}, rest;
@@ -55,7 +55,7 @@ double squares(const std::vector<double>& values) {
 }
 
 struct HeightError {
-  double quick = 0; // rms over that of the truth, of what is quick
+  double quick = 0; // rms of the high frequencies, relative to the truth
   double nees = 0;
 };
 
@@ -69,7 +69,7 @@ HeightError errorOf(const Rough& rough) {
       truth.push_back(handAt(rough.hand, heights[end].t).surface);
       wrong.push_back(heights[end].point.height - truth.back());
     }
-    double mean = 0; // where the plane lies is not asked
+    double mean = 0; // the offset of the plane does not count
     for (const double each : wrong) mean += each / static_cast<double>(wrong.size());
     for (std::size_t i = 0; i < wrong.size(); ++i)
       error.nees += std::pow((wrong[i] - mean) / heights[begin + i].point.sigma, 2) /
@@ -81,7 +81,7 @@ HeightError errorOf(const Rough& rough) {
   return error;
 }
 
-TEST(ScanHeights, AreThoseThatTheTipWentOver) {
+TEST(ScanHeights, MatchTheSurfaceUnderTheTip) {
   for (const std::uint32_t seed : {1, 2, 3}) {
     const Rough rough = roughScan(seed, 50e-6);
     const HeightError error = errorOf(rough);
@@ -95,8 +95,8 @@ TEST(ScanHeights, AreThoseThatTheTipWentOver) {
   }
 }
 
-// A press moves the tip by a millimetre where it stands: none of it may become texture.
-TEST(ScanHeights, ArePressedByNothing) {
+// A press moves a resting tip by a millimetre, and none of it may become texture.
+TEST(ScanHeights, AreFreeOfTheCompliance) {
   for (const double stiffness : {1000., 3000.}) {
     Rough rough;
     rough.hand.seed = 3;
@@ -116,7 +116,7 @@ TEST(ScanHeights, ArePressedByNothing) {
     rough.found = scanHeights(
         filterScan(poses, simulateProbe(rough.hand, probe, {}, 6), probe, filter, progress), poses,
         probe, filter.gravity, Vec3::UnitZ());
-    // Where it went.
+    // The path of the tip.
     std::vector<ScanHeight>& heights = rough.found.heights;
     std::erase_if(heights,
                   [&](const ScanHeight& height) { return height.t < 4.6 || height.t > 5.4; });
@@ -126,8 +126,8 @@ TEST(ScanHeights, ArePressedByNothing) {
   }
 }
 
-// A sine of one wavelength, of which a Gaussian of this cutoff lets a known part pass.
-TEST(Roughness, OfASineIsTheClosedForm) {
+// A sine of one wavelength, of which a Gaussian of this cutoff passes a known part.
+TEST(Roughness, MatchesTheClosedFormForASine) {
   constexpr double kSize = 10e-6, kCutoff = 2.5e-3;
   for (const double length : {0.5e-3, 1.25e-3, 2.5e-3}) {
     std::vector<ScanHeight> heights;
@@ -141,7 +141,7 @@ TEST(Roughness, OfASineIsTheClosedForm) {
     const auto found = roughnessOf(heights, kCutoff);
     ASSERT_TRUE(found);
     const double left = 1 - std::exp(-std::log(2.) * std::pow(kCutoff / length, 2));
-    // A place is a twenty-fifth of the cutoff: lines between them miss the sine by a few percent.
+    // The path is sampled at a twenty-fifth of the cutoff: chords miss the sine by a few percent.
     EXPECT_NEAR(found->rq, left * kSize / std::sqrt(2.), 0.03 * kSize) << length;
     EXPECT_NEAR(found->ra, left * 2 * kSize / M_PI, 0.03 * kSize) << length;
     EXPECT_LT(found->rq_deviation, 0.02 * kSize);
@@ -150,9 +150,9 @@ TEST(Roughness, OfASineIsTheClosedForm) {
   EXPECT_FALSE(roughnessOf({}, kCutoff));
 }
 
-// What is found of a scan against the surface that the hand went over, and the means of white noise
-// against their stated deviation.
-TEST(Roughness, OfAScanIsTheSurfacesAndItsDeviationHolds) {
+// The roughness of a scan against that of the scanned surface, and the means of white noise against
+// their stated deviation.
+TEST(Roughness, MatchesTheScannedSurfaceAndItsDeviationHolds) {
   for (const std::uint32_t seed : {1, 2, 3}) {
     const Rough rough = roughScan(seed, 50e-6);
     std::vector<ScanHeight> truth = rough.found.heights;
@@ -183,13 +183,13 @@ TEST(Roughness, OfAScanIsTheSurfacesAndItsDeviationHolds) {
   EXPECT_LT(pulls, 1.5);
 }
 
-TEST(ScanHeights, KnowThePlaneAndItsOutside) {
+TEST(ScanHeights, FindThePlaneAndItsOutside) {
   const Rough rough = roughScan(4, 25e-6);
   EXPECT_GT(rough.found.plane.normal.z(), std::cos(0.01));
   EXPECT_NEAR(rough.found.plane.point.z(), 0, 1e-3);
 }
 
-TEST(ScanHeights, KnowStiffnessWithinItsDeviation) {
+TEST(ScanHeights, FindStiffnessWithinItsDeviation) {
   double pulls = 0, found = 0;
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
     const Rough rough = roughScan(seed, 25e-6);
@@ -223,7 +223,7 @@ std::vector<PathSample> touching(const std::vector<Vec3>& places) {
   return path;
 }
 
-TEST(TouchedPlane, IsNoneOnALineOrInTheAir) {
+TEST(TouchedPlane, IsAbsentOnALineOrInTheAir) {
   std::vector<Vec3> line, ball;
   for (int i = 0; i < 500; ++i) {
     const double t = 0.05 * i;
@@ -237,7 +237,7 @@ TEST(TouchedPlane, IsNoneOnALineOrInTheAir) {
   EXPECT_THROW(touchedPlane(std::vector<PathSample>(500), tip), Error);
 }
 
-TEST(TouchedPlane, LooksToWhereTheShaftIs) {
+TEST(TouchedPlane, FacesTheShaft) {
   std::vector<Vec3> places;
   for (int i = 0; i < 100; ++i) places.emplace_back(0.01 * std::sin(i), 0.01 * std::cos(i), 0.3);
   std::vector<PathSample> path = touching(places);

@@ -1,9 +1,9 @@
-// The library that holds Ceres, by problems whose answers are known.
+// The library that holds Ceres, on problems with known solutions.
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "acquisition/solver_library.h"
+#include "acquisition/loaded/solver_library.h"
 #include "core/decompose.h"
 
 namespace patina {
@@ -26,7 +26,7 @@ LeastSquares lineThrough(const std::vector<double>& heights) {
   return task;
 }
 
-TEST(SolverLibrary, ALineIsThatOfTheNormalEquations) {
+TEST(SolverLibrary, LineFitMatchesTheNormalEquations) {
   const LeastSquares task = lineThrough({1, 3, 4, 8});
   std::vector<double> line(2), covariance;
   LeastSquaresSteps steps;
@@ -37,13 +37,13 @@ TEST(SolverLibrary, ALineIsThatOfTheNormalEquations) {
   ASSERT_EQ(solverLibrary().covariance(task, line, covariance), "");
   const MatX expected = (MatX(2, 2) << 0.7, -0.3, -0.3, 0.2).finished();
   EXPECT_LT((Eigen::Map<const MatX>(covariance.data(), 2, 2) - expected).norm(), 1e-12);
-  // From where it is there is no step left to take.
+  // At the solution no step is left.
   ASSERT_EQ(solverLibrary().solve(task, line, steps), "");
   EXPECT_EQ(steps.taken, 0);
 }
 
-// Rosenbrock's valley, from the place that all begin at.
-TEST(SolverLibrary, ABentValleyIsFollowedToItsEnd) {
+// Rosenbrock's valley, from its usual starting point.
+TEST(SolverLibrary, FollowsACurvedValleyToItsEnd) {
   LeastSquares task;
   task.values = task.residuals = 2;
   task.evaluate = [](const double* p, double* residuals, double* slopes) {
@@ -57,10 +57,10 @@ TEST(SolverLibrary, ABentValleyIsFollowedToItsEnd) {
   };
   std::vector<double> place{-1.2, 1};
   LeastSquaresSteps steps;
-  task.most_steps = 3;
+  task.max_steps = 3;
   ASSERT_EQ(solverLibrary().solve(task, place, steps), "");
   EXPECT_FALSE(steps.settled);
-  task.most_steps = 50;
+  task.max_steps = 50;
   ASSERT_EQ(solverLibrary().solve(task, place, steps), "");
   EXPECT_TRUE(steps.settled);
   EXPECT_GT(steps.taken, 1);
@@ -68,11 +68,11 @@ TEST(SolverLibrary, ABentValleyIsFollowedToItsEnd) {
   EXPECT_NEAR(place[1], 1, 1e-6);
 }
 
-TEST(SolverLibrary, WhatCannotBeSolvedIsSaidAndNotOnTheConsole) {
+TEST(SolverLibrary, ReportsFailureWithoutConsoleOutput) {
   testing::internal::CaptureStderr();
   std::vector<double> values{1, 2}, covariance;
   LeastSquaresSteps steps;
-  // Two values of which only the sum is told.
+  // Two values of which only the sum is observable.
   LeastSquares task = lineThrough({1, 3});
   task.evaluate = [](const double* p, double* residuals, double* slopes) {
     residuals[0] = residuals[1] = p[0] + p[1] - 7;
@@ -86,10 +86,10 @@ TEST(SolverLibrary, WhatCannotBeSolvedIsSaidAndNotOnTheConsole) {
   };
   EXPECT_EQ(solverLibrary().solve(task, values, steps), "");
   EXPECT_FALSE(steps.settled);
-  EXPECT_NEAR(values[0] + values[1], 7, 1e-6); // they stay
+  EXPECT_NEAR(values[0] + values[1], 7, 1e-6); // the values stay
   task.evaluate = [](const double*, double*, double*) { throw std::runtime_error("no residuals"); };
   EXPECT_EQ(solverLibrary().solve(task, values, steps), "no residuals");
-  // Nothing to find is found.
+  // A problem without parameters is solved.
   task.values = 0;
   values.clear();
   EXPECT_EQ(solverLibrary().solve(task, values, steps), "");
@@ -97,6 +97,66 @@ TEST(SolverLibrary, WhatCannotBeSolvedIsSaidAndNotOnTheConsole) {
   EXPECT_EQ(solverLibrary().covariance(task, values, covariance), "");
   EXPECT_TRUE(covariance.empty());
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// Two lines with a common slope: their heights at 0 are eliminated, or one is held.
+TEST(SolverLibrary, SparseFitMatchesTheNormalEquations) {
+  const std::vector<double> y{1, 3, 4, 8, 2, 2.5, 5, 5};
+  SparseLeastSquares task;
+  for (int block = 0; block < 3; ++block) {
+    task.blocks.emplace_back();
+    task.blocks.back().first = block;
+    task.blocks.back().size = 1;
+    task.blocks.back().eliminated = block > 0;
+  }
+  MatX design = MatX::Zero(8, 3);
+  for (int i = 0; i < 8; ++i) {
+    const double t = i % 4, height = y[static_cast<std::size_t>(i)];
+    design(i, 0) = t;
+    design(i, 1 + i / 4) = 1;
+    SparseLeastSquares::Term term;
+    term.blocks = {0, 1 + i / 4};
+    term.residuals = 1;
+    term.evaluate = [t, height](const double* const* at, double* residuals, double* const* slopes) {
+      residuals[0] = at[0][0] * t + at[1][0] - height;
+      if (slopes && slopes[0]) slopes[0][0] = t;
+      if (slopes && slopes[1]) slopes[1][0] = 1;
+      return true;
+    };
+    task.terms.push_back(term);
+  }
+  task.settled = 1e-14;
+  std::vector<double> values(3), covariance;
+  LeastSquaresSteps steps;
+  ASSERT_EQ(solverLibrary().solveSparse(task, values, steps), "");
+  EXPECT_TRUE(steps.settled);
+  const MatX normal = design.transpose() * design;
+  const VecX expected =
+      SymmetricSolver(normal).solve(design.transpose() * Eigen::Map<const VecX>(y.data(), 8));
+  EXPECT_LT((Eigen::Map<const VecX>(values.data(), 3) - expected).norm(), 1e-5);
+  ASSERT_EQ(solverLibrary().sparseCovariance(task, values, {0, 2}, covariance), "");
+  const MatX inverse = SymmetricSolver(normal).inverse();
+  EXPECT_NEAR(covariance[0], inverse(0, 0), 1e-12);
+  EXPECT_NEAR(covariance[1], inverse(0, 2), 1e-12);
+  EXPECT_NEAR(covariance[3], inverse(2, 2), 1e-12);
+
+  task.blocks[2].held = true;
+  values[2] = 7;
+  ASSERT_EQ(solverLibrary().solveSparse(task, values, steps), "");
+  EXPECT_EQ(values[2], 7);
+  // An outlier hardly moves a robust fit.
+  task.blocks[2].held = false;
+  for (SparseLeastSquares::Term& term : task.terms) term.robust = 0.1;
+  task.terms.push_back(task.terms[0]);
+  task.terms.back().evaluate = [](const double* const* at, double* residuals,
+                                  double* const* slopes) {
+    residuals[0] = at[1][0] - 1000;
+    if (slopes && slopes[0]) slopes[0][0] = 0;
+    if (slopes && slopes[1]) slopes[1][0] = 1;
+    return true;
+  };
+  ASSERT_EQ(solverLibrary().solveSparse(task, values, steps), "");
+  EXPECT_LT(std::abs(values[1] - expected[1]), 1);
 }
 
 } // namespace

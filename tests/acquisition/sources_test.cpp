@@ -14,7 +14,8 @@
 #include <unistd.h>
 
 #include "acquisition/files/frame_files.h"
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
+#include "core/descriptor.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "support/fresh_folder.h"
@@ -35,7 +36,7 @@ class Sources : public testing::Test {
   Sources() : folder(test::freshFolder("sources")) { fs::create_directories(folder / "frames"); }
   ~Sources() override { fs::remove_all(folder); }
 
-  // Each frame has a grey of its own.
+  // Each frame has its own grey value.
   static GreyFrame frameOf(int i) {
     return {64, 48, std::vector<std::uint8_t>(64 * 48, static_cast<std::uint8_t>(20 + 10 * i))};
   }
@@ -50,7 +51,7 @@ class Sources : public testing::Test {
     writeFileAtomically(folder / "frames.csv", list);
     writeProbeStream(folder / "probe.csv", samples);
   }
-  // What next() or read() throws.
+  // Returns the message that next() or read() throws.
   template <class Work> static std::string causeOf(const Work& work) {
     try {
       work();
@@ -81,7 +82,7 @@ TEST_F(Sources, GiveAFoldersFramesInTheirOrder) {
   EXPECT_FALSE(source->next());
 }
 
-TEST_F(Sources, TellPicturesByTheirContentAndCountTheRest) {
+TEST_F(Sources, RecogniseImagesByContentAndCountTheRest) {
   const fs::path pictures = folder / "pictures";
   fs::create_directories(pictures);
   writeFileAtomically(pictures / "IMG_10.JPG", test::jpegOf(frameOf(3)));
@@ -89,7 +90,7 @@ TEST_F(Sources, TellPicturesByTheirContentAndCountTheRest) {
   writeGrey(folder / "one.png", frameOf(0));
   fs::rename(folder / "one.png", pictures / "IMG_0001.PNG");
   writeGrey(folder / "two.png", frameOf(1));
-  fs::rename(folder / "two.png", pictures / "IMG_2.webp"); // whatever it calls itself
+  fs::rename(folder / "two.png", pictures / "IMG_2.webp"); // a wrong name ending
   test::writeTiff(pictures / "IMG_11", frameOf(4), 1);
   for (const char* other : {"Thumbs.db", "readme.txt", ".DS_Store", "._IMG_9.jpeg"})
     writeFileAtomically(pictures / other, "no picture");
@@ -103,7 +104,7 @@ TEST_F(Sources, TellPicturesByTheirContentAndCountTheRest) {
     ASSERT_EQ(frame->image.width, 64) << frame->fault;
     EXPECT_NEAR(frame->image.row(20)[30], 20 + 10 * i, 2) << frame->name;
   }
-  // One that was a picture is a frame that cannot be read.
+  // A file that lost its picture is an unreadable frame.
   EXPECT_NE(source->next()->fault.find("IMG_12.JPG: cannot be read"), std::string::npos);
   EXPECT_FALSE(source->next());
   EXPECT_EQ(source->notes(),
@@ -133,7 +134,7 @@ TEST_F(Sources, ReplayFramesAndSamplesAtTheirOwnPace) {
   EXPECT_EQ(samples.size(), 200u);
 }
 
-TEST_F(Sources, AFrameThatIsMissingIsAGapAndAllOfThemAnError) {
+TEST_F(Sources, OneMissingFrameIsAGapAndAllMissingAnError) {
   makeScan(3);
   fs::remove(folder / "frames" / "000000.png");
   EXPECT_NO_THROW((void)openFrames(folder.string(), 0));
@@ -144,13 +145,13 @@ TEST_F(Sources, AFrameThatIsMissingIsAGapAndAllOfThemAnError) {
                   ": holds none of the 3 pictures that frames.csv lists");
 }
 
-TEST_F(Sources, AFrameListedTwiceIsRefusedWithBothLines) {
+TEST_F(Sources, FrameListedTwiceIsRejectedWithBothLines) {
   const std::string list = "frame,t [s]\n4,1\n5,2\n4,3\n";
   EXPECT_EQ(causeOf([&] { (void)parseFrameList(list, "frames.csv"); }),
             "frames.csv:4: frame 4 stands in line 2 already");
 }
 
-TEST_F(Sources, ThatAreStoppedEndAtOnce) {
+TEST_F(Sources, EndAtOnceIfStopped) {
   makeScan(2);
   writeFileAtomically(folder / "frames.csv", "frame,t [s]\n0,5\n1,500\n");
   writeFileAtomically(folder / "probe.csv", readFile(folder / "probe.csv") + "600,0,0,0,0,0\n");
@@ -158,7 +159,7 @@ TEST_F(Sources, ThatAreStoppedEndAtOnce) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const auto frames = openFrames("replay:" + folder.string(), 0);
   const auto replayed = openProbe("replay:" + folder.string());
-  const auto stream = openProbe("stream:" + pipe.string()); // nobody writes to it
+  const auto stream = openProbe("stream:" + pipe.string()); // a pipe without a writer
   const auto ended = [](const auto& work) { return std::async(std::launch::async, work); };
   auto a = ended([&] {
     while (frames->next()) {
@@ -213,7 +214,7 @@ class Streams : public Sources {
   int writer = -1;
 };
 
-TEST_F(Streams, GiveLinesAsTheyArriveInWhateverPieces) {
+TEST_F(Streams, GiveLinesAsTheyArriveInAnyPieces) {
   push(probeHeader() + row(0) + row(1).substr(0, 7));
   EXPECT_EQ(read().size(), 1u);
   auto later = std::async(std::launch::async, [&] {
@@ -230,7 +231,7 @@ TEST_F(Streams, GiveLinesAsTheyArriveInWhateverPieces) {
   EXPECT_FALSE(source->read(none));
 }
 
-TEST_F(Streams, MayHaveMoreColumnsAndThenHaveThemInEachLine) {
+TEST_F(Streams, MayHaveMoreColumnsIfEachLineHasThem) {
   std::string header = probeHeader();
   header.insert(header.find_first_of("\r\n"), ",battery [V]");
   push(header + "0,1.5,0,9.8,0,1,3.3\n");
@@ -241,7 +242,7 @@ TEST_F(Streams, MayHaveMoreColumnsAndThenHaveThemInEachLine) {
   EXPECT_NE(cause.find("pipe:3: 6 values where the header names 7"), std::string::npos) << cause;
 }
 
-TEST_F(Streams, NameALineThatIsWrongAfterThoseBeforeIt) {
+TEST_F(Streams, NameAWrongLineAfterReadingTheLinesBefore) {
   push(probeHeader() + row(0) + row(1) + "0,006;1;2\n" + row(4));
   std::vector<ProbeSample> samples;
   const std::string cause = causeOf([&] { source->read(samples); });
@@ -249,14 +250,14 @@ TEST_F(Streams, NameALineThatIsWrongAfterThoseBeforeIt) {
   EXPECT_NE(cause.find("pipe:4: decimal commas"), std::string::npos) << cause;
 }
 
-TEST_F(Streams, SayThatTheirTimeRunsBackwards) {
+TEST_F(Streams, ReportTimeThatRunsBackwards) {
   push(probeHeader() + row(5) + row(4));
   std::vector<ProbeSample> samples;
   const std::string cause = causeOf([&] { source->read(samples); });
   EXPECT_NE(cause.find("pipe:3: time runs backwards"), std::string::npos) << cause;
 }
 
-TEST_F(Streams, SayThatTheWriterWentWithinALine) {
+TEST_F(Streams, ReportAWriterThatEndsWithinALine) {
   push(probeHeader() + row(0) + "0.002,1.5,0");
   EXPECT_EQ(read().size(), 1u);
   hangUp();
@@ -265,14 +266,14 @@ TEST_F(Streams, SayThatTheWriterWentWithinALine) {
   EXPECT_NE(cause.find("pipe:3: the stream ended within this line"), std::string::npos) << cause;
 }
 
-TEST_F(Streams, RefuseWhatIsNoProbesStream) {
+TEST_F(Streams, RejectOtherData) {
   push("time,force\n");
   std::vector<ProbeSample> samples;
   const std::string cause = causeOf([&] { source->read(samples); });
   EXPECT_NE(cause.find("pipe:1: header is 'time,force'"), std::string::npos) << cause;
 }
 
-TEST(SerialStreams, LeaveOutTheLineThatHadBegun) {
+TEST(SerialStreams, SkipTheFirstPartialLine) {
   const int master = posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(master, 0);
   ASSERT_EQ(grantpt(master) | unlockpt(master), 0);
@@ -286,7 +287,71 @@ TEST(SerialStreams, LeaveOutTheLineThatHadBegun) {
   close(master);
 }
 
-TEST(SerialStreams, SayThatTheDeviceIsGone) {
+// Sends a text over a pseudo-terminal and reads what comes of it.
+struct TextOverSerial {
+  explicit TextOverSerial(const std::string& text) {
+    const Descriptor ours(posix_openpt(O_RDWR | O_NOCTTY));
+    EXPECT_EQ(grantpt(ours.get()) | unlockpt(ours.get()), 0);
+    const auto source = openProbe(std::string("stream:") + ptsname(ours.get()) + "@115200");
+    EXPECT_EQ(write(ours.get(), text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    try {
+      // The source is stopped once nothing more can come.
+      auto watch = std::async(std::launch::async, [&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        source->stop();
+      });
+      while (samples.size() < lines && source->read(samples, &rates)) {
+      }
+    } catch (const Error& error) {
+      cause = error.what();
+      cause.erase(0, cause.find(':')); // the name of the terminal
+    }
+  }
+  std::vector<ProbeSample> samples;
+  std::vector<RateSample> rates;
+  std::string cause;
+};
+
+TEST(SerialStreams, ReadAGyroscopeInTheUnitsOfTheHeader) {
+  const TextOverSerial got("t [ms],wx [deg/s],wy [deg/s],wz [deg/s],force [mN],"
+                           "a1u [g],a1v [g],a2u [g],a2v [g]\n"
+                           "2,90,0,-180,500,0,1,0.5,1\n4,0,0,0,0,0,0,0,0\n");
+  EXPECT_EQ(got.cause, "");
+  ASSERT_EQ(got.samples.size(), 2u);
+  ASSERT_EQ(got.rates.size(), 2u);
+  EXPECT_DOUBLE_EQ(got.samples[0].t, 0.002);
+  EXPECT_DOUBLE_EQ(got.samples[0].force, 0.5);
+  EXPECT_DOUBLE_EQ(got.samples[0].acceleration[2], 0.5 * 9.80665);
+  EXPECT_EQ(got.rates[0].t, got.samples[0].t);
+  EXPECT_NEAR((got.rates[0].rate - std::numbers::pi * Vec3(0.5, 0, -1)).norm(), 0, 1e-12);
+}
+
+TEST(SerialStreams, AssumeTheOrderOfTheDocumentsIfJoinedWithoutAHeader) {
+  const TextOverSerial got("1,2,3\n0.004,1,2,3,4,5,6,7,8\n0.006,1,2,3,4,5,6,7,8\n" +
+                           probeHeader(true) + "0.008,1,2,3,4,5,6,7,8\n");
+  EXPECT_EQ(got.cause, "");
+  ASSERT_EQ(got.samples.size(), 3u);
+  ASSERT_EQ(got.rates.size(), 3u);
+  EXPECT_EQ(got.rates[2].rate, Vec3(6, 7, 8));
+}
+
+TEST(SerialStreams, RejectAHeaderThatContradictsTheNumbersBeforeIt) {
+  const TextOverSerial got("1,2,3\n0.004,1,2,3,4,5\n"
+                           "t [ms],force [N],a1u [m/s^2],a1v [m/s^2],a2u [m/s^2],a2v [m/s^2]\n");
+  EXPECT_EQ(got.samples.size(), 1u);
+  EXPECT_EQ(got.cause, ":3: is not the header 't [s],force [N],a1u [m/s^2],a1v [m/s^2],a2u "
+                       "[m/s^2],a2v [m/s^2]' of the numbers before it: send that one first after "
+                       "each start");
+}
+
+TEST(SerialStreams, RejectHalfAGyroscope) {
+  const TextOverSerial got("t [s],force [N],a1u [m/s^2],a1v [m/s^2],a2u [m/s^2],a2v [m/s^2],"
+                           "wx [rad/s]\n0,1,2,3,4,5,6\n");
+  EXPECT_NE(got.cause.find("has 1 of the gyroscope's columns"), std::string::npos) << got.cause;
+}
+
+TEST(SerialStreams, ReportALostDevice) {
   const int master = posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(master, 0);
   ASSERT_EQ(grantpt(master) | unlockpt(master), 0);
@@ -306,7 +371,7 @@ TEST(SerialStreams, SayThatTheDeviceIsGone) {
 
 class Videos : public Sources {
  protected:
-  // Motion JPEG: each frame stands for itself.
+  // In Motion JPEG each frame is coded alone.
   std::string made(int count) const {
     const std::string path = (folder / "video.avi").string();
     cv::VideoWriter writer(path, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25, {64, 48}, false);
@@ -366,7 +431,7 @@ std::string matroska(const std::vector<std::string>& pictures, const std::vector
                                  element(0x1F43B675, blocks));
 }
 
-// Of the next frames, to the end.
+// Times of the remaining frames.
 std::vector<double> timesOf(FrameSource& source) {
   std::vector<double> times;
   while (const auto frame = source.next()) {
@@ -388,27 +453,27 @@ TEST_F(Videos, HaveTheTimesOfTheirContainer) {
   ASSERT_EQ(found.size(), times.size());
   for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(found[i], 1e-3 * times[i], 1e-9);
   EXPECT_TRUE(source->notes().empty());
-  // A rate that was told overrules them.
+  // A given rate overrules them.
   const auto even = timesOf(*openFrames(path, 50));
   ASSERT_EQ(even.size(), times.size());
   EXPECT_DOUBLE_EQ(even.back(), 0.16);
 }
 
-TEST_F(Videos, WithoutTimesNeedARate) {
+TEST_F(Videos, NeedARateIfTheyHaveNoTimes) {
   std::string bytes;
   for (int i = 0; i < 5; ++i) bytes += test::jpegOf(frameOf(i));
   const std::string path = (folder / "raw.mjpeg").string();
   writeFileAtomically(path, bytes);
   EXPECT_NE(causeOf([&] {
               (void)timesOf(*openFrames(path, 0));
-            }).find("raw.mjpeg: holds no times of its frames and does not say"),
+            }).find("raw.mjpeg: has neither frame times nor a frame rate"),
             std::string::npos);
   const auto told = openFrames(path, 10);
   EXPECT_DOUBLE_EQ(timesOf(*told)[4], 0.4);
   EXPECT_TRUE(told->notes().empty());
 }
 
-// What the program ffprobe says of a file's frames is the truth; both come with FFmpeg.
+// The reference is the output of the program ffprobe, which comes with FFmpeg like the library.
 class ProbedVideos : public Videos {
  protected:
   static std::string output(const std::string& command) {
@@ -431,10 +496,10 @@ class ProbedVideos : public Videos {
   }
 };
 
-TEST_F(ProbedVideos, HaveTheTimesThatFfprobeTells) {
+TEST_F(ProbedVideos, HaveTheTimesReportedByFfprobe) {
   if (output("ffmpeg -version 2>/dev/null").empty() || output("ffprobe -version").empty())
     GTEST_SKIP() << "ffmpeg is absent (Debian: ffmpeg)";
-  // Frames of 60 a second of which some are left out, so that two steps of time differ by 265 ms.
+  // Some of 60 frames a second are missing, so that two time steps differ by 265 ms.
   const std::string source =
       "ffmpeg -v error -y -f lavfi -i testsrc2=size=160x120:rate=60:duration=1.5 -vf "
       "\"select='not(eq(mod(n\\,7)\\,3))*not(between(n\\,30\\,45))'\" -vsync vfr "
@@ -450,7 +515,7 @@ TEST_F(ProbedVideos, HaveTheTimesThatFfprobeTells) {
            {"-c:v mjpeg -pix_fmt yuvj420p", "fine.avi"}}) {
     const std::string path = (folder / name).string();
     (void)output(source + options + " " + path + " 2>/dev/null");
-    if (!fs::exists(path) || fs::file_size(path) == 0) continue; // built without that coder
+    if (!fs::exists(path) || fs::file_size(path) == 0) continue; // FFmpeg may lack that coder
     const auto truth = probed(path), found = timesOf(*openFrames(path, 0));
     ASSERT_EQ(found.size(), truth.size()) << name;
     ASSERT_GT(found.size(), 50u) << name;
@@ -459,7 +524,7 @@ TEST_F(ProbedVideos, HaveTheTimesThatFfprobeTells) {
   }
   std::printf("off by %.3g ms at most\n", 1e3 * most);
   EXPECT_LE(most, 1e-3);
-  // The beginning is cut off, yet in the file: nothing is damaged.
+  // The beginning is cut off but still in the file: nothing is damaged.
   const std::string whole = (folder / "reordered.mp4").string(), cut = folder / "cut.mp4";
   (void)output("ffmpeg -v error -y -ss 0.33 -i " + whole + " -c copy " + cut + " 2>/dev/null");
   ASSERT_TRUE(fs::exists(cut));
@@ -467,16 +532,16 @@ TEST_F(ProbedVideos, HaveTheTimesThatFfprobeTells) {
   EXPECT_EQ(timesOf(*openFrames((folder / "reordered.mkv").string(), 30)).size(),
             probed(folder / "reordered.mkv").size());
   EXPECT_EQ(timesOf(*openFrames(cut, 0)).size(), probed(cut).size());
-  // Nothing but pictures: FFmpeg supposes 25 a second.
+  // The file contains only pictures: FFmpeg assumes 25 a second.
   const std::string raw = folder / "raw.mjpeg";
   (void)output(source + "-c:v mjpeg -pix_fmt yuvj420p " + raw + " 2>/dev/null");
   const auto even = openFrames(raw, 0);
   EXPECT_NEAR(timesOf(*even)[10], 0.4, 1e-9);
   ASSERT_EQ(even->notes().size(), 1u);
-  EXPECT_NE(even->notes()[0].find("raw.mjpeg: holds no times of its frames, so 25 a second are"),
+  EXPECT_NE(even->notes()[0].find("raw.mjpeg: has no frame times, so 25 frames per second are"),
             std::string::npos)
       << even->notes()[0];
-  // A phone held upright says so.
+  // A video from an upright phone carries its rotation.
   const std::string upright = folder / "upright.mp4";
   (void)output("ffmpeg -v error -y -i " + whole + " -c copy -metadata:s:v rotate=90 " + upright +
                " 2>/dev/null");
@@ -486,7 +551,7 @@ TEST_F(ProbedVideos, HaveTheTimesThatFfprobeTells) {
   EXPECT_EQ(first->image.width, 120);
 }
 
-TEST_F(Videos, ThatAreDamagedSayWhereTheyEnd) {
+TEST_F(Videos, ReportTheirEndIfDamaged) {
   const std::string path = made(60);
   fs::resize_file(path, fs::file_size(path) / 2);
   testing::internal::CaptureStderr();
@@ -496,18 +561,18 @@ TEST_F(Videos, ThatAreDamagedSayWhereTheyEnd) {
     while (const auto frame = source->next())
       if (!frame->fault.empty()) fault = frame->fault;
   } catch (const FileError& error) {
-    fault = error.what(); // without its index it may not open at all
+    fault = error.what(); // it may not open without its index
   }
   EXPECT_NE(fault.find("video.avi: "), std::string::npos) << fault;
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(Videos, AndCamerasThatAreNoneAreRefusedInOneLine) {
+TEST_F(Videos, AndCamerasAreRejectedInOneLineIfInvalid) {
   writeFileAtomically(folder / "text.mp4", "no video");
   testing::internal::CaptureStderr();
   EXPECT_NE(causeOf([&] {
               openFrames((folder / "text.mp4").string(), 0);
-            }).find("text.mp4: is no video that can be read"),
+            }).find("text.mp4: cannot be read as a video"),
             std::string::npos);
   EXPECT_NE(causeOf([&] { openFrames("camera:97", 0); }).find("there is no /dev/video97"),
             std::string::npos);

@@ -1,4 +1,4 @@
-#include "acquisition/calibration/still_probe.h"
+#include "acquisition/calibration/probe_calibration.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ struct HeldProbe {
 const std::array<double, 4> kBias{0.06, -0.04, 0.05, -0.07};
 const Vec3 kDown = 9.80665 * Vec3(0.1, 0.85, 0.5).normalized();
 
-// In each attitude for some seconds, turned quickly from one to the next.
+// The probe rests in each attitude for some seconds and rotates quickly between them.
 HeldProbe held(const ProbeModel& model, int attitudes, double lean, std::uint32_t seed,
                int seconds = 2) {
   std::mt19937 random(seed);
@@ -56,7 +56,7 @@ HeldProbe held(const ProbeModel& model, int attitudes, double lean, std::uint32_
   return probe;
 }
 
-TEST(StillProbe, TellsGravityAxesAndBiases) {
+TEST(AccelerometerCalibration, FindsGravityAxesAndBiases) {
   ProbeModel known, rough;
   for (AccelerometerAxis& axis : known.axes)
     axis.direction = Eigen::AngleAxisd(0.15, Vec3(1, -2, 0.5).normalized()) * axis.direction;
@@ -65,7 +65,7 @@ TEST(StillProbe, TellsGravityAxesAndBiases) {
     double nees = 0;
     for (std::uint32_t seed = 1; seed <= 10; ++seed) {
       const HeldProbe probe = held(known, 25, 1.2, seed, seconds);
-      const auto fit = fitStillProbe(probe.poses, probe.samples, rough);
+      const auto fit = calibrateAccelerometers(probe.poses, probe.samples, rough);
       ASSERT_TRUE(fit);
       EXPECT_EQ(fit->attitudes, 25u);
       EXPECT_LT((fit->gravity - kDown).norm(), 0.03);
@@ -83,27 +83,27 @@ TEST(StillProbe, TellsGravityAxesAndBiases) {
   }
 }
 
-TEST(StillProbe, ShowsAWrongUnitInTheGain) {
+TEST(AccelerometerCalibration, ShowsAWrongUnitInTheGain) {
   const ProbeModel model;
   HeldProbe probe = held(model, 25, 1.2, 1);
   for (ProbeSample& sample : probe.samples) sample.acceleration[1] *= 1.1;
-  const auto fit = fitStillProbe(probe.poses, probe.samples, model);
+  const auto fit = calibrateAccelerometers(probe.poses, probe.samples, model);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->gain[1], 1.1, 0.02);
   EXPECT_NEAR(fit->gain[0], 1, 0.02);
 }
 
-TEST(StillProbe, SaysNothingWhereAttitudesAreAlikeOrMoving) {
+TEST(AccelerometerCalibration, ReturnsNothingForSimilarOrMovingAttitudes) {
   const ProbeModel model;
   HeldProbe probe = held(model, 25, 0.02, 1);
-  EXPECT_FALSE(fitStillProbe(probe.poses, probe.samples, model)) << "alike";
+  EXPECT_FALSE(calibrateAccelerometers(probe.poses, probe.samples, model)) << "similar attitudes";
   probe = held(model, 2, 1.2, 1);
-  EXPECT_FALSE(fitStillProbe({}, probe.samples, model));
-  EXPECT_FALSE(fitStillProbe(probe.poses, {}, model));
-  EXPECT_FALSE(fitStillProbe(probe.poses, probe.samples, model)) << "too few";
+  EXPECT_FALSE(calibrateAccelerometers({}, probe.samples, model));
+  EXPECT_FALSE(calibrateAccelerometers(probe.poses, {}, model));
+  EXPECT_FALSE(calibrateAccelerometers(probe.poses, probe.samples, model)) << "too few";
   probe = held(model, 25, 1.2, 1);
   for (ProbeSample& sample : probe.samples) sample.acceleration[2] += 2 * std::sin(60 * sample.t);
-  EXPECT_FALSE(fitStillProbe(probe.poses, probe.samples, model)) << "moving";
+  EXPECT_FALSE(calibrateAccelerometers(probe.poses, probe.samples, model)) << "moving";
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// Coordinates of a texture along a path over a mesh (A12 to A16), against what planes and circles
-// have in closed form.
+// Texture coordinates along a path over a mesh (A12 to A16), against closed forms on planes and
+// circles.
 #include "acquisition/texture/texture_coordinates.h"
 
 #include <map>
@@ -20,7 +20,7 @@ std::vector<std::int32_t> allFaces(const TriangleMesh& mesh) {
   return all;
 }
 
-// A sheet whose inner corners are moved about in its plane.
+// A sheet whose inner corners are moved within its plane.
 TriangleMesh unevenSheet(double side, int cells, unsigned seed) {
   TriangleMesh mesh = sheet(side, side, cells);
   Draw draw(seed);
@@ -31,7 +31,7 @@ TriangleMesh unevenSheet(double side, int cells, unsigned seed) {
   return mesh;
 }
 
-// How much of the segment a..b lies within a triangle of the plane z = 0, clipped edge by edge.
+// Length of the segment a..b inside a triangle of the plane z = 0, clipped edge by edge.
 double lengthWithin(const TriangleMesh& mesh, std::size_t face, const Vec3& a, const Vec3& b) {
   double from = 0, to = 1;
   for (int k = 0; k < 3; ++k) {
@@ -44,10 +44,10 @@ double lengthWithin(const TriangleMesh& mesh, std::size_t face, const Vec3& a, c
   return std::max(0.0, to - from) * (b - a).norm();
 }
 
-TEST(FacesUnder, AreAllThatAPathCrossesAlsoBetweenItsSamples) {
+TEST(FacesUnder, IncludeFacesCrossedBetweenSamples) {
   Draw draw(4);
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const PathGround ground(unevenSheet(0.1, 30, seed));
+    const MeshQuery ground(unevenSheet(0.1, 30, seed));
     std::vector<Vec3> path;
     for (int i = 0; i < 5; ++i)
       path.emplace_back(draw.uniform(-0.05, 0.05), draw.uniform(-0.05, 0.05), 0);
@@ -70,7 +70,7 @@ TEST(FacesUnder, AreAllThatAPathCrossesAlsoBetweenItsSamples) {
 
 // T-A13
 TEST(Rings, CountNeighboursByVertexOrByEdge) {
-  const PathGround ground(sheet(0.1, 0.1, 10));
+  const MeshQuery ground(sheet(0.1, 0.1, 10));
   const Vec3 inside = (ground.mesh.corner(90, 0) + ground.mesh.corner(90, 1) * 1.1 +
                        ground.mesh.corner(90, 2) * 0.9) /
                       3;
@@ -83,8 +83,8 @@ TEST(Rings, CountNeighboursByVertexOrByEdge) {
 }
 
 // T-A14a
-TEST(PathCoordinates, OfAStraightPathOnAPlaneAreThoseOfThePlane) {
-  const PathGround ground(unevenSheet(0.1, 20, 7));
+TEST(PathCoordinates, MatchThePlaneForAStraightPath) {
+  const MeshQuery ground(unevenSheet(0.1, 20, 7));
   const Vec3 from(-0.031, -0.017, 0), to(0.022, 0.025, 0), along = (to - from).normalized(),
                                                            left = Vec3::UnitZ().cross(along);
   std::vector<Vec3> path;
@@ -93,12 +93,12 @@ TEST(PathCoordinates, OfAStraightPathOnAPlaneAreThoseOfThePlane) {
   const PathCoordinates found = pathCoordinates(ground, allFaces(ground.mesh), {path, {}}, {});
   EXPECT_EQ(found.faces.size(), ground.mesh.triangles.size());
   EXPECT_NEAR(found.length, (to - from).norm(), 1e-12);
-  EXPECT_NEAR(found.most, 1, 1e-9);
+  EXPECT_NEAR(found.max_stretch, 1, 1e-9);
   for (const TexturedFace& face : found.faces)
     for (int k = 0; k < 3; ++k) {
       const Vec3 p = ground.mesh.corner(static_cast<std::size_t>(face.face), k) - from;
-      EXPECT_NEAR(face.at[static_cast<std::size_t>(k)].x(), p.dot(along), 1e-12);
-      EXPECT_NEAR(face.at[static_cast<std::size_t>(k)].y(), p.dot(left), 1e-12);
+      EXPECT_NEAR(face.coords[static_cast<std::size_t>(k)].x(), p.dot(along), 1e-12);
+      EXPECT_NEAR(face.coords[static_cast<std::size_t>(k)].y(), p.dot(left), 1e-12);
     }
 }
 
@@ -112,9 +112,9 @@ std::vector<Vec3> circle(double radius, int n) {
 }
 
 // T-A14b
-TEST(PathCoordinates, OfACircleConvergeAsItsChords) {
+TEST(PathCoordinates, ConvergeLikeTheChordsOfACircle) {
   const double radius = 0.03;
-  const PathGround ground(unevenSheet(0.1, 40, 2));
+  const MeshQuery ground(unevenSheet(0.1, 40, 2));
   std::vector<std::int32_t> near;
   for (const std::int32_t face : allFaces(ground.mesh)) {
     bool is = true;
@@ -133,10 +133,10 @@ TEST(PathCoordinates, OfACircleConvergeAsItsChords) {
     for (const TexturedFace& face : found.faces)
       for (int k = 0; k < 3; ++k) {
         const Vec3 p = ground.mesh.corner(static_cast<std::size_t>(face.face), k);
-        double x = radius * std::atan2(p.y(), p.x()) - face.at[static_cast<std::size_t>(k)].x();
+        double x = radius * std::atan2(p.y(), p.x()) - face.coords[static_cast<std::size_t>(k)].x();
         x -= length * std::round(x / length); // a closed path has a seam
-        // Counter-clockwise round +z, the centre is to the left.
-        const double y = radius - p.head<2>().norm() - face.at[static_cast<std::size_t>(k)].y();
+        // The path runs counter-clockwise around +z, so the centre is to the left.
+        const double y = radius - p.head<2>().norm() - face.coords[static_cast<std::size_t>(k)].y();
         EXPECT_LE(std::abs(y), 1.0001 * radius * (1 - std::cos(std::numbers::pi / n)));
         most = std::max({most, std::abs(x), std::abs(y)});
       }
@@ -147,9 +147,9 @@ TEST(PathCoordinates, OfACircleConvergeAsItsChords) {
 }
 
 // T-A14c, T-A14d
-TEST(PathCoordinates, TurnRoundWithThePathAndMoveWithTheMesh) {
+TEST(PathCoordinates, ReverseWithThePathAndMoveWithTheMesh) {
   const TriangleMesh mesh = test::bumpyPatch(60);
-  const PathGround ground(mesh);
+  const MeshQuery ground(mesh);
   std::vector<Vec3> path;
   for (int i = 0; i <= 60; ++i) {
     const Vec3 p(-0.03 + 0.001 * i, 0.01 * std::sin(0.05 * i), 0);
@@ -167,23 +167,23 @@ TEST(PathCoordinates, TurnRoundWithThePathAndMoveWithTheMesh) {
   pose.translation() = Vec3(0.2, -0.1, 0.5);
   std::vector<Vec3> moved;
   for (const Vec3& p : path) moved.push_back(pose * p);
-  const PathGround elsewhere(transformed(mesh, Eigen::Affine3d(pose)));
+  const MeshQuery elsewhere(transformed(mesh, Eigen::Affine3d(pose)));
   const PathCoordinates there = pathCoordinates(elsewhere, faces, {moved, {}}, {3});
   ASSERT_EQ(there.faces.size(), found.faces.size());
   for (std::size_t i = 0; i < found.faces.size(); ++i) {
     EXPECT_EQ(found.faces[i].texture, 3);
     EXPECT_EQ(there.faces[i].face, found.faces[i].face);
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec2 &at = found.faces[i].at[k], &turned = back.faces[i].at[k];
+      const Vec2 &at = found.faces[i].coords[k], &turned = back.faces[i].coords[k];
       EXPECT_NEAR(turned.x(), found.length - at.x(), 1e-12);
       EXPECT_NEAR(turned.y(), -at.y(), 1e-12);
-      EXPECT_LT((there.faces[i].at[k] - at).norm(), 1e-12);
+      EXPECT_LT((there.faces[i].coords[k] - at).norm(), 1e-12);
     }
   }
 }
 
-TEST(PathCoordinates, OfTwoLegsHaveASeamAndNoWarp) {
-  const PathGround ground(unevenSheet(0.1, 50, 5));
+TEST(PathCoordinates, HaveASeamWithoutWarpBetweenTwoLegs) {
+  const MeshQuery ground(unevenSheet(0.1, 50, 5));
   std::vector<Vec3> path; // up one side, round a half circle of 10 mm, down the other
   for (int i = 0; i <= 40; ++i) path.emplace_back(-0.01, -0.04 + 0.001 * i, 0);
   for (int i = 1; i < 40; ++i) {
@@ -201,21 +201,21 @@ TEST(PathCoordinates, OfTwoLegsHaveASeamAndNoWarp) {
     const Vec3 middle =
         (ground.mesh.corner(f, 0) + ground.mesh.corner(f, 1) + ground.mesh.corner(f, 2)) / 3;
     if (middle.y() > -0.005) continue;
-    const double side = middle.x() < 0 ? -1 : 1; // which leg is nearer
+    const double side = middle.x() < 0 ? -1 : 1; // sign of the nearer leg
     ++legs;
     for (int k = 0; k < 3; ++k) {
       const Vec3 p = ground.mesh.corner(f, k);
       const double way = p.y() + 0.04, x = side < 0 ? way : found.length - way;
-      EXPECT_NEAR(face.at[static_cast<std::size_t>(k)].x(), x, 1e-9);
-      EXPECT_NEAR(face.at[static_cast<std::size_t>(k)].y(), side < 0 ? -0.01 - p.x() : p.x() - 0.01,
-                  1e-9);
+      EXPECT_NEAR(face.coords[static_cast<std::size_t>(k)].x(), x, 1e-9);
+      EXPECT_NEAR(face.coords[static_cast<std::size_t>(k)].y(),
+                  side < 0 ? -0.01 - p.x() : p.x() - 0.01, 1e-9);
     }
   }
   EXPECT_GT(legs, 1500u);
 }
 
-TEST(PathCoordinates, LeaveOutWhatABendFoldsAndSaySo) {
-  const PathGround ground(unevenSheet(0.1, 100, 9));
+TEST(PathCoordinates, OmitFoldsOfABendAndReportThem) {
+  const MeshQuery ground(unevenSheet(0.1, 100, 9));
   // A half circle of 5 mm whose legs end at once: behind its centre x runs backwards.
   std::vector<Vec3> path;
   for (int i = 0; i <= 60; ++i) {
@@ -227,28 +227,28 @@ TEST(PathCoordinates, LeaveOutWhatABendFoldsAndSaySo) {
   EXPECT_GT(found.folded + found.ambiguous + found.stretched, 4u);
   for (const TexturedFace& face : found.faces) {
     const auto f = static_cast<std::size_t>(face.face);
-    const Vec2 a = face.at[1] - face.at[0], b = face.at[2] - face.at[0];
+    const Vec2 a = face.coords[1] - face.coords[0], b = face.coords[2] - face.coords[0];
     EXPECT_GT(a.x() * b.y() - a.y() * b.x(), 0) << f;
     for (int k = 0; k < 3; ++k) {
       const Vec3 edge = ground.mesh.corner(f, (k + 1) % 3) - ground.mesh.corner(f, k);
-      const Vec2 grown =
-          face.at[static_cast<std::size_t>((k + 1) % 3)] - face.at[static_cast<std::size_t>(k)];
+      const Vec2 grown = face.coords[static_cast<std::size_t>((k + 1) % 3)] -
+                         face.coords[static_cast<std::size_t>(k)];
       EXPECT_LE(grown.norm(), 2.0001 * edge.norm());
     }
   }
 }
 
-// T-A17: equal paths on two meshes of one surface give equal coordinates wherever they are asked.
+// T-A17: equal paths on two meshes of one surface give equal coordinates at any point.
 TEST(PathCoordinates, DoNotDependOnTheTriangles) {
   const std::vector<Vec3> path = {{-0.04, -0.01, 0}, {0.04, 0.012, 0}};
-  const auto coordinateAt = [&](const PathGround& ground, const PathCoordinates& found,
+  const auto coordinateAt = [&](const MeshQuery& ground, const PathCoordinates& found,
                                 const Vec3& p) {
     const SurfacePoint at = ground.tree.closestPoint(p).surface;
     const TexturedFace& face = found.faces[static_cast<std::size_t>(at.face)];
-    return Vec2(at.barycentric[0] * face.at[0] + at.barycentric[1] * face.at[1] +
-                at.barycentric[2] * face.at[2]);
+    return Vec2(at.barycentric[0] * face.coords[0] + at.barycentric[1] * face.coords[1] +
+                at.barycentric[2] * face.coords[2]);
   };
-  const PathGround coarse(unevenSheet(0.1, 7, 1)), fine(unevenSheet(0.1, 90, 2));
+  const MeshQuery coarse(unevenSheet(0.1, 7, 1)), fine(unevenSheet(0.1, 90, 2));
   const PathCoordinates a = pathCoordinates(coarse, allFaces(coarse.mesh), {path, {}}, {});
   const PathCoordinates b = pathCoordinates(fine, allFaces(fine.mesh), {path, {}}, {});
   Draw draw(6);
@@ -258,17 +258,17 @@ TEST(PathCoordinates, DoNotDependOnTheTriangles) {
   }
 }
 
-// Closed, and at its beginning its two directions are opposite.
-TEST(PathCoordinates, OfAWayThereAndBackAreFinite) {
-  const PathGround ground(sheet(0.1, 0.1, 10));
+// The path is closed, and its two directions at the beginning are opposite.
+TEST(PathCoordinates, AreFiniteForAPathThereAndBack) {
+  const MeshQuery ground(sheet(0.1, 0.1, 10));
   const std::vector<Vec3> path = {{0, 0, 0}, {0.02, 0, 0}, {0.04, 0, 0}, {0.02, 0, 0}, {0, 0, 0}};
   for (const TexturedFace& face :
        pathCoordinates(ground, allFaces(ground.mesh), {path, {}}, {}).faces)
-    for (const Vec2& at : face.at) EXPECT_TRUE(at.allFinite());
+    for (const Vec2& at : face.coords) EXPECT_TRUE(at.allFinite());
 }
 
 TEST(PathCoordinates, NeedAPathWithLength) {
-  const PathGround ground(sheet(0.1, 0.1, 4));
+  const MeshQuery ground(sheet(0.1, 0.1, 4));
   EXPECT_THROW(pathCoordinates(ground, {0}, {{Vec3::Zero(), Vec3::Zero()}, {}}, {}), Error);
   EXPECT_THROW(pathCoordinates(ground, {0}, {}, {}), Error);
 }

@@ -1,4 +1,4 @@
-// The house keeps its plan: its rooms and their doors, checked on every source.
+// Checks the architecture's rules on every source.
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -18,15 +18,15 @@ std::vector<std::string> forbidden(const std::string& path, const std::string& l
   return includeViolations({path, "// first\n" + line + "\n"});
 }
 
-TEST(Architecture, EveryIncludeKeepsToThePlan) {
+TEST(Architecture, EveryIncludeFollowsThePlan) {
   const std::vector<SourceFile> files = filesUnder({"modules", "app"}, isCode);
   ASSERT_GT(files.size(), 50u);
   for (const SourceFile& file : files)
     for (const std::string& violation : includeViolations(file)) ADD_FAILURE() << violation;
 }
 
-// What judges contact must not share a mistake with what it judges.
-TEST(Architecture, TheOracleOfContactKnowsNoFieldAndNoStage) {
+// The code that judges contact must not share a mistake with the code under test.
+TEST(Architecture, ContactOracleIncludesNoFieldAndNoStage) {
   int files = 0;
   for (const SourceFile& file : filesUnder({"app/studies/contact"}, isCode)) {
     if (file.path.find("/oracle.") == std::string::npos) continue;
@@ -38,25 +38,25 @@ TEST(Architecture, TheOracleOfContactKnowsNoFieldAndNoStage) {
   EXPECT_EQ(files, 2);
 }
 
-// The checker itself: each made-up edge must be seen, each allowed one must pass.
-TEST(Architecture, TheCheckerSeesForbiddenEdges) {
+// Tests the checker itself: each made-up edge must be found, each allowed one must pass.
+TEST(Architecture, CheckerFindsForbiddenEdges) {
   for (const auto& [path, line] : std::vector<std::pair<std::string, std::string>>{
            {"modules/core/a.cpp", "#include \"geometry/mesh/triangle_mesh.h\""},
            {"modules/geometry/a.cpp", "#include \"field/surface/models.h\""},
            {"modules/field/a.h", "#include \"scene/scene.h\""},
-           {"modules/scene/a.cpp", "#include \"haptics/servo/snapshot.h\""},
-           {"modules/haptics/a.cpp", "#include \"visualization/export/field_io.h\""},
-           {"modules/visualization/a.cpp", "#include \"haptics/servo/snapshot.h\""},
-           {"modules/workspace/a.cpp", "#include \"visualization/export/field_io.h\""},
+           {"modules/scene/a.cpp", "#include \"haptics/law/snapshot.h\""},
+           {"modules/haptics/a.cpp", "#include \"visualization/files/field_io.h\""},
+           {"modules/visualization/a.cpp", "#include \"haptics/law/snapshot.h\""},
+           {"modules/workspace/a.cpp", "#include \"visualization/files/field_io.h\""},
            {"modules/workspace/a.cpp", "#include \"usb/usb_bus.h\""},
-           {"modules/haptics/a.cpp", "  #  include  \"session/build/session.h\""},
+           {"modules/haptics/a.cpp", "  #  include  \"session/open/session.h\""},
            {"modules/kitchen/a.cpp", "#include \"core/json.h\""},
            {"modules/field/a.cpp", "#include \"models.h\""},
            {"app/studies/a.cpp", "#include \"app/gui/window/main_window.h\""},
            {"modules/session/a.cpp", "#include \"app/gui/window/main_window.h\""},
-           {"modules/scene/a.cpp", "#include \"session/build/session.h\""},
-           {"app/studies/a.cpp", "#include \"app/cli/commands/command.h\""},
-           {"app/gui/a.cpp", "#include \"app/cli/commands/command.h\""},
+           {"modules/scene/a.cpp", "#include \"session/open/session.h\""},
+           {"app/studies/a.cpp", "#include \"app/cli/framework/command.h\""},
+           {"app/gui/a.cpp", "#include \"app/cli/framework/command.h\""},
            {"modules/core/csv.cpp", "#include <nlohmann/json.hpp>"},
            {"modules/core/json.h", "#include <nlohmann/json.hpp>"},
            {"modules/geometry/mesh/adjacency.h",
@@ -72,6 +72,9 @@ TEST(Architecture, TheCheckerSeesForbiddenEdges) {
            {"modules/session/a.cpp", "#include <QString>"},
            {"app/gui/a.cpp", "#include <nlohmann/json.hpp>"},
            {"app/gui/a.cpp", "#include \"acquisition/registration/joint_fit.h\""},
+           {"app/cli/a.cpp", "#include \"acquisition/calibration/pivot.h\""},
+           {"app/gui/a.cpp", "#include \"acquisition/recording/recorder.h\""},
+           {"app/cli/a.cpp", "#include \"acquisition/simulation/simulated_scan.h\""},
            {"app/cli/a.h", "#include <libusb.h>"},
            {"modules/core/sha256.h", "#include <openssl/evp.h>"},
            {"modules/haptics/a.cpp", "#include <libusb.h>"},
@@ -82,7 +85,7 @@ TEST(Architecture, TheCheckerSeesForbiddenEdges) {
   }
 }
 
-TEST(Architecture, TheCheckerAllowsWhatThePlanAllows) {
+TEST(Architecture, CheckerAllowsPlannedEdges) {
   for (const auto& [path, line] : std::vector<std::pair<std::string, std::string>>{
            {"modules/scene/a.h", "#include \"field/store/field_grid.h\""},
            {"modules/haptics/a.cpp", "#include \"usb/usb_bus.h\""},
@@ -95,7 +98,10 @@ TEST(Architecture, TheCheckerAllowsWhatThePlanAllows) {
            {"modules/core/a.h", "#include <vector>"},
            {"modules/core/a.h", "#include <Eigen/Core>"},
            {"app/gui/a.h", "#include <QWidget>"},
-           {"app/cli/a.cpp", "#include \"session/build/session.h\""}})
+           {"app/studies/a.cpp", "#include \"acquisition/registration/joint_fit.h\""},
+           {"app/cli/a.cpp", "#include \"acquisition/files/scan_tables.h\""},
+           {"app/gui/a.h", "#include \"acquisition/values/scan_samples.h\""},
+           {"app/cli/a.cpp", "#include \"session/open/session.h\""}})
     EXPECT_TRUE(forbidden(path, line).empty()) << forbidden(path, line)[0];
 }
 
@@ -107,8 +113,8 @@ TEST(Architecture, NoFileIsTooLongToRead) {
   }
 }
 
-// Two types of one name are merged by the linker, member functions and all, without a word.
-TEST(Architecture, NoTwoHeadersDefineATypeOfOneName) {
+// The linker merges two types of one name, member functions included, without a warning.
+TEST(Architecture, HeadersDefineEachTypeNameOnce) {
   std::map<std::string, std::string> first;
   for (const SourceFile& file : filesUnder({"modules", "app"}, isCode)) {
     if (!file.path.ends_with(".h")) continue;
@@ -142,7 +148,7 @@ TEST(Architecture, EveryModuleHeaderBeginsWithItsIdea) {
   }
 }
 
-// Each of Eigen's is compiled anew in every file that names it.
+// Each Eigen decomposition is compiled again in every file that uses it.
 TEST(Architecture, MatricesAreDecomposedInOnePlace) {
   for (const SourceFile& file : filesUnder({"app", "modules"}, isCode)) {
     if (file.path.starts_with("modules/core/decompose.")) continue;
@@ -154,7 +160,7 @@ TEST(Architecture, MatricesAreDecomposedInOnePlace) {
   }
 }
 
-TEST(Architecture, TheTopLevelTellsTheStory) {
+TEST(Architecture, TopLevelHasOnlyListedEntries) {
   const std::set<std::string> allowed{"CMakeLists.txt",
                                       "README.md",
                                       "LICENSE",
@@ -173,7 +179,7 @@ TEST(Architecture, TheTopLevelTellsTheStory) {
                                       ".gitignore",
                                       ".gitattributes",
                                       ".git_archival.txt"};
-  // What git leaves out: see .gitignore.
+  // Entries that git ignores: see .gitignore.
   const std::set<std::string> ignored{".git", "out", ".cache", "compile_commands.json"};
   std::set<std::string> found;
   for (const fs::directory_entry& item : fs::directory_iterator(kRoot)) {
@@ -183,8 +189,8 @@ TEST(Architecture, TheTopLevelTellsTheStory) {
   EXPECT_EQ(found, allowed);
 }
 
-TEST(Architecture, NothingNamesTheMachineItWasMadeOn) {
-  // In pieces, so that this file passes too.
+TEST(Architecture, FilesDoNotNameTheDevelopmentMachine) {
+  // The words are split, so that this file passes too.
   const std::vector<std::string> places{std::string("/ho") + "me/", std::string("/wo") + "rk/",
                                         std::string("/fa") + "rm", std::string("/Us") + "ers/",
                                         std::string("/tmp/") + "b-"};

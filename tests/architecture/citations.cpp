@@ -12,7 +12,7 @@ const std::string kItem =
     R"((?:T-[A-Z]+[0-9]*[a-z]?|K[0-9]{2}[a-z]?|A[0-9]{2}|F[0-9]{1,2}|P[0-9]{2}))";
 const std::string kNumber = R"([0-9](?:\.[0-9]+)*)";
 
-// "a, b", "a and b" and "a to b" are all of them.
+// "a, b", "a and b" and "a to b" cite all of them.
 void addNumbers(const std::string& list, std::vector<std::string>& cited) {
   static const std::regex number(kNumber);
   for (std::sregex_iterator at(list.begin(), list.end(), number), end; at != end; ++at)

@@ -1,4 +1,4 @@
-// What comments and documents cite, and whether it stands in docs/mathematics.md.
+// Citations in comments and documents, and whether docs/mathematics.md defines them.
 #pragma once
 
 #include <set>
@@ -10,15 +10,15 @@
 namespace patina::architecture {
 
 // Items are the first cells of table rows ("K05", "T-K06b"), sections the numbers of headings and
-// bold labels ("2.1", "2.1.7"). Once for each time that one is defined.
+// bold labels ("2.1", "2.1.7"). The result has one entry for each definition.
 std::vector<std::string> definitionsIn(const std::string& mathematics);
 
-// One line for each item, numbered section or document that `defined` does not hold: "path:line:
-// cause". Sections are cited with the document's name and a number; without it they lead nowhere.
+// Returns one line for each item, numbered section or document that `defined` does not contain:
+// "path:line: cause". Sections are cited with the document's name and a number; others are errors.
 std::vector<std::string> unresolvedCitations(const SourceFile& file,
                                              const std::set<std::string>& defined);
 
-// The anchors that headings of a document make: "## Where to start" is "where-to-start".
+// Returns the anchors of a document's headings: "## Where to start" is "where-to-start".
 std::set<std::string> anchorsIn(const std::string& document);
 
 } // namespace patina::architecture

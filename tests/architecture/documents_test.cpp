@@ -1,4 +1,4 @@
-// What documents and comments point at exists: links, files, items of docs/mathematics.md.
+// Checks that links, files and items of docs/mathematics.md that documents and comments name exist.
 #include <algorithm>
 #include <regex>
 
@@ -25,7 +25,7 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
   return found;
 }
 
-TEST(Documents, EveryLinkLeadsToAFileAndAHeadingOfIt) {
+TEST(Documents, EveryLinkLeadsToAFileAndItsHeading) {
   std::size_t links = 0;
   for (const SourceFile& document : documents()) {
     for (const std::string& link : matches(document.text, R"(\]\(([^)\s]+)\))")) {
@@ -45,11 +45,11 @@ TEST(Documents, EveryLinkLeadsToAFileAndAHeadingOfIt) {
   EXPECT_GT(links, 10u);
 }
 
-TEST(Documents, EveryFileThatIsNamedExists) {
+TEST(Documents, EveryNamedFileExists) {
   const std::vector<SourceFile> all =
       filesUnder({"README.md", "modules", "app", "tests", "docs", "data"},
                  [](const fs::path& path) { return isCode(path) || isDocument(path); });
-  // By its path, or by the end of it: `stage.h`, `servo/snapshot.h`.
+  // A file is named by its path or by the end of it: `stage.h`, `servo/snapshot.h`.
   const auto exists = [&](const std::string& name) {
     return fs::exists(kRoot / name) ||
            std::any_of(all.begin(), all.end(),
@@ -73,7 +73,7 @@ TEST(Documents, EveryFileThatIsNamedExists) {
   EXPECT_GT(named, in_documents);
 }
 
-TEST(Documents, EveryItemAndSectionThatIsCitedStandsInTheMathematics) {
+TEST(Documents, MathematicsContainEveryCitedItemAndSection) {
   const std::vector<std::string> definitions = definitionsIn(textOf("docs/mathematics.md"));
   const std::set<std::string> defined(definitions.begin(), definitions.end());
   EXPECT_EQ(defined.size(), definitions.size()) << "something is defined twice";
@@ -86,7 +86,7 @@ TEST(Documents, EveryItemAndSectionThatIsCitedStandsInTheMathematics) {
   }
 }
 
-TEST(Documents, TheCheckerFindsWhatTheMathematicsDefines) {
+TEST(Documents, CheckerFindsDefinitionsInTheMathematics) {
   EXPECT_EQ(definitionsIn("# Title\n## 2. Loops\n### 2.1 A wall\n- **2.1.7** In space.\n"
                           "| Item | Says |\n|---|---|\n| K05 | direction, as K04 |\n"
                           "| T-K06b | order 2 |\nF13 in a line of text\n"),
@@ -95,7 +95,7 @@ TEST(Documents, TheCheckerFindsWhatTheMathematicsDefines) {
             (std::set<std::string>{"one", "kx-where"}));
 }
 
-TEST(Documents, TheCheckerSeesCitationsThatLeadNowhere) {
+TEST(Documents, CheckerFindsCitationsWithoutATarget) {
   const std::set<std::string> defined{"K05", "F1", "P01", "T-K06b", "T-ENER", "2", "2.1", "2.1.2"};
   const auto found = [&](const std::string& line) {
     return unresolvedCitations({"a.h", "// first\n" + line + "\n"}, defined);
@@ -114,8 +114,8 @@ TEST(Documents, TheCheckerSeesCitationsThatLeadNowhere) {
     EXPECT_TRUE(found(line).empty()) << line << ": " << found(line)[0];
 }
 
-// The README promises exactly two commands, and both are there and can be started.
-TEST(Documents, TheTwoCommandsOfTheReadmeCanBeStarted) {
+// The README promises exactly two commands; both must exist and start.
+TEST(Documents, ReadmesTwoCommandsStart) {
   const std::vector<std::string> commands =
       matches(textOf("README.md"), R"(\n    ([a-z]+/[a-z]+\.sh))");
   EXPECT_EQ(commands, (std::vector<std::string>{"app/run.sh", "tests/run.sh"}));

@@ -11,7 +11,8 @@ namespace {
 
 using Names = std::set<std::string>;
 
-// What a module sees besides itself. Siblings (haptics to workspace) never see one another.
+// Modules that a module may include besides itself. Siblings (haptics, workspace) never include one
+// another.
 const std::map<std::string, Names>& visibleModules() {
   static const Names kBelowSiblings{"core", "geometry", "field", "scene"};
   static const std::map<std::string, Names> kVisible{
@@ -45,7 +46,7 @@ struct Owner {
 
 struct Library {
   std::string name;
-  std::vector<std::string> prefixes; // of the included path
+  std::vector<std::string> prefixes; // possible starts of the included path
   std::vector<Owner> owners;
 };
 
@@ -67,10 +68,11 @@ const std::vector<Library>& libraries() {
       {"OpenImageIO", {"OpenImageIO/"}, {{"modules/pictures/", false}}},
       {"OpenCV",
        {"opencv2/"},
-       {{"modules/acquisition/vision/aruco.h", true},
-        {"modules/acquisition/vision/", false},
-        {"modules/acquisition/video/", false}}},
+       {{"modules/acquisition/vision/", false}, {"modules/acquisition/video/", false}}},
       {"Ceres", {"ceres/", "glog/"}, {{"modules/acquisition/solver/", false}}},
+      {"cairo", {"cairo"}, {{"modules/acquisition/printer/", false}}},
+      {"Expat", {"expat.h"}, {{"modules/acquisition/profilometer/", false}}},
+      {"minizip", {"minizip/"}, {{"modules/acquisition/profilometer/", false}}},
       {"FFmpeg", {"libav"}, {{"modules/acquisition/video/", false}}},
       {"OpenSSL", {"openssl/"}, {{"modules/core/sha256.cpp", false}}},
       {"pthread", {"pthread.h", "semaphore.h"}, {{"modules/haptics/", false}}},
@@ -81,13 +83,13 @@ const std::vector<Library>& libraries() {
   return kLibraries;
 }
 
-// Headers of the system that end in .h; those of C++ have no dot.
+// System headers end in .h; those of C++ have no dot.
 bool isSystem(const std::string& included) {
   if (included.find('.') == std::string::npos) return included.find('/') == std::string::npos;
-  static const Names kSystem{"malloc.h",    "unistd.h", "fcntl.h",  "sched.h",
-                             "time.h",      "stdlib.h", "stddef.h", "stdint.h",
-                             "string.h",    "poll.h",   "dirent.h", "immintrin.h",
-                             "emmintrin.h", "signal.h", "dlfcn.h",  "termios.h"};
+  static const Names kSystem{"malloc.h",  "unistd.h",    "fcntl.h",     "sched.h",  "time.h",
+                             "stdlib.h",  "stddef.h",    "stdint.h",    "string.h", "poll.h",
+                             "dirent.h",  "immintrin.h", "emmintrin.h", "signal.h", "dlfcn.h",
+                             "termios.h", "link.h"};
   return kSystem.contains(included) || included.starts_with("sys/");
 }
 
@@ -131,19 +133,29 @@ Cause ofApp(const std::string& path, const std::string& included) {
   return std::nullopt;
 }
 
-// From a scan to a feel commands and window call the functions of modules/scan. Of these rooms they
-// know values, and what is no step: a guess, a map of errors, a texture of a picture.
+// Commands and window call the steps of a scan through modules/scan. From acquisition itself they
+// include files and plain values, emulated and USB probes, the lens, and algorithms that are no
+// step: figures of a path, a first guess, picked points, the texture of a picture.
 Cause ofStep(const std::string& path, const std::string& included) {
-  static const Names kRooms{"acquisition/filtering/", "acquisition/registration/",
-                            "acquisition/texture/"};
-  static const Names kKnown{
-      "acquisition/filtering/filtered_scan.h",  "acquisition/registration/error_map.h",
-      "acquisition/registration/first_guess.h", "acquisition/registration/register_path.h",
-      "acquisition/registration/rigid_fit.h",   "acquisition/texture/fit_plane.h",
-      "acquisition/texture/fit_texture.h",      "acquisition/texture/lay_texture.h"};
+  static const Names kKnown{"acquisition/values/camera.h",
+                            "acquisition/values/orientation.h",
+                            "acquisition/profile/roughness.h",
+                            "acquisition/profilometer/measured_heights.h",
+                            "acquisition/profilometer/square_area.h",
+                            "acquisition/recording/recording_state.h",
+                            "acquisition/registration/error_map.h",
+                            "acquisition/registration/first_guess.h",
+                            "acquisition/registration/rigid_fit.h",
+                            "acquisition/values/scan_samples.h",
+                            "acquisition/simulation/emulated_probe.h",
+                            "acquisition/simulation/path_error.h",
+                            "acquisition/sources/usb_probe.h",
+                            "acquisition/texture/fit_plane.h",
+                            "acquisition/tracking/lens.h"};
   if (!path.starts_with("app/cli/") && !path.starts_with("app/gui/")) return std::nullopt;
-  const std::string room = included.substr(0, included.rfind('/') + 1);
-  if (!kRooms.contains(room) || kKnown.contains(included)) return std::nullopt;
+  if (!included.starts_with("acquisition/") || included.starts_with("acquisition/files/") ||
+      kKnown.contains(included))
+    return std::nullopt;
   return "a step of a scan is called through modules/scan";
 }
 
@@ -186,7 +198,7 @@ std::vector<std::string> includeViolations(const SourceFile& file) {
     if (!quoted && open != '<') continue;
     const std::size_t begin = directive.size() + 1;
     const std::string included = line.substr(begin, line.find(quoted ? '"' : '>', begin) - begin);
-    // A tool's own output beside a source ("file.moc").
+    // A tool's own output next to a source ("file.moc").
     if (included.ends_with(".moc") && file.path.starts_with("app/gui/")) continue;
     if (const Cause cause = causeAgainst(file.path, included, quoted))
       violations.push_back(file.path + ":" + std::to_string(number) + ": " + included + ": " +

@@ -1,4 +1,4 @@
-// Who may include whom (docs/architecture.md), as a pure function of a file's path and text.
+// Include rules (docs/architecture.md), as a pure function of a file's path and text.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace patina::architecture {
 
-// One line for each #include that the rules forbid: "path:line: cause".
+// Returns one line for each forbidden #include: "path:line: cause".
 std::vector<std::string> includeViolations(const SourceFile& file);
 
 } // namespace patina::architecture

@@ -1,4 +1,4 @@
-// The project's own files as text, for the rules that are checked on them.
+// The project's own files as text, for rules that are checked on them.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct SourceFile {
 bool isCode(const std::filesystem::path& path);
 bool isDocument(const std::filesystem::path& path);
 
-// Below the folders, which may be missing; a file may stand for a folder.
+// Returns the wanted files below the folders, which may be missing; a file may stand for a folder.
 std::vector<SourceFile> filesUnder(const std::vector<std::string>& folders,
                                    bool (*wanted)(const std::filesystem::path&));
 

@@ -1,11 +1,11 @@
-// The brush's weight, its size and where it lays its dabs (K17, K19).
+// The brush's weight, its size and the positions of its dabs (K17, K19).
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "authoring/brush/dab.h"
-#include "authoring/brush/stroke_path.h"
+#include "authoring/brush/painter.h"
 #include "authoring/paint_fixture.h"
 
 namespace patina {
@@ -37,7 +37,7 @@ TEST(Brush, WeightIntegratesToItsClosedForm) {
   }
 }
 
-TEST(Brush, WeightFallsFromOneToNothingAtTheRim) {
+TEST(Brush, WeightFallsFromOneToZeroAtTheRadius) {
   for (const BrushShape shape : {BrushShape::power, BrushShape::cone, BrushShape::smooth}) {
     const Brush brush = shaped(shape, 3);
     EXPECT_EQ(brushWeight(brush, 0, 0.01), 1);
@@ -55,8 +55,8 @@ TEST(Brush, RadiusFollowsTheForceWithinItsLimits) {
   Brush brush;
   brush.radius = 0.002;
   brush.radius_per_force = 0.001;
-  brush.least_radius = 0.0025;
-  brush.most_radius = 0.006;
+  brush.min_radius = 0.0025;
+  brush.max_radius = 0.006;
   EXPECT_DOUBLE_EQ(brushRadius(brush, 1), 0.003);
   EXPECT_DOUBLE_EQ(brushRadius(brush, 3), 0.005);
   EXPECT_EQ(brushRadius(brush, 0), 0.0025);
@@ -67,26 +67,27 @@ FieldGrid someGrid() {
   return gridAround(Box3(Vec3::Constant(-0.05), Vec3::Constant(0.05)), FieldSpec{});
 }
 
-TEST(StrokePath, RadiusOfANoisyForceIsCalmAndTheSameAtAnyRate) {
+TEST(StrokePath, RadiusIsSmoothUnderNoisyForceAtAnyRate) {
   Brush brush;
   brush.radius = 0;
   brush.radius_per_force = 0.001;
   StrokePath noisy(brush, someGrid());
   double least = 1, most = 0;
   for (int k = 0; k < 600; ++k) {
-    const auto steps = noisy.to({k / 600.0, Vec3::Zero(), k % 2 ? 6.0 : 4.0});
+    const auto steps = noisy.advanceTo({k / 600.0, Vec3::Zero(), k % 2 ? 6.0 : 4.0});
     if (k < 300) continue;
     least = std::min(least, steps.back().radius);
     most = std::max(most, steps.back().radius);
   }
-  EXPECT_LT(most - least, 0.0001); // of 2 mm
+  EXPECT_LT(most - least, 0.0001); // for a radius of 2 mm
   EXPECT_NEAR(most, 0.005, 0.0001);
   double ends[2];
   for (int rate = 0; rate < 2; ++rate) {
     StrokePath path(brush, someGrid());
     const int n = rate ? 12 : 6;
-    (void)path.to({0, Vec3::Zero(), 1});
-    for (int k = 1; k <= n; ++k) ends[rate] = path.to({0.2 * k / n, Vec3::Zero(), 5}).back().radius;
+    (void)path.advanceTo({0, Vec3::Zero(), 1});
+    for (int k = 1; k <= n; ++k)
+      ends[rate] = path.advanceTo({0.2 * k / n, Vec3::Zero(), 5}).back().radius;
   }
   EXPECT_NEAR(ends[0], ends[1], 1e-12);
 }
@@ -95,8 +96,8 @@ TEST(StrokePath, StepsAreAQuarterOfTheRadiusApartAtMost) {
   Brush brush;
   brush.radius = 0.004;
   StrokePath path(brush, someGrid());
-  (void)path.to({0, Vec3(-0.03, 0, 0), 0});
-  const auto steps = path.to({1, Vec3(0.03, 0.01, 0), 0});
+  (void)path.advanceTo({0, Vec3(-0.03, 0, 0), 0});
+  const auto steps = path.advanceTo({1, Vec3(0.03, 0.01, 0), 0});
   Vec3 last(-0.03, 0, 0);
   for (const PathStep& step : steps) {
     EXPECT_LE((step.position - last).norm(), 0.001 * (1 + 1e-9));
@@ -106,18 +107,18 @@ TEST(StrokePath, StepsAreAQuarterOfTheRadiusApartAtMost) {
   EXPECT_EQ(last, Vec3(0.03, 0.01, 0));
 }
 
-TEST(StrokePath, NeedlesAndFarJourneysComeToAnEnd) {
+TEST(StrokePath, NeedlesAndFarJumpsTerminate) {
   Brush brush;
   brush.radius = 1e-12;
   StrokePath path(brush, someGrid());
-  (void)path.to({0, Vec3(-1e12, 0, 0), 0});
-  EXPECT_LE(path.to({1, Vec3(1e12, 0, 0), 0}).size(), 20000u);
+  (void)path.advanceTo({0, Vec3(-1e12, 0, 0), 0});
+  EXPECT_LE(path.advanceTo({1, Vec3(1e12, 0, 0), 0}).size(), 20000u);
   EXPECT_FALSE(path.reached());
-  EXPECT_LE(path.to({2, Vec3(0, 0, 0), 0}).size(), 20000u);
+  EXPECT_LE(path.advanceTo({2, Vec3(0, 0, 0), 0}).size(), 20000u);
   EXPECT_TRUE(path.reached());
-  EXPECT_TRUE(path.to({3, Vec3(0, 1e300, 0), 0}).size() <= 20000u);
-  EXPECT_TRUE(path.to({4, Vec3::Constant(std::nan("")), 0}).empty());
-  EXPECT_TRUE(path.to({5, Vec3(0, 0, 0), INFINITY}).empty());
+  EXPECT_TRUE(path.advanceTo({3, Vec3(0, 1e300, 0), 0}).size() <= 20000u);
+  EXPECT_TRUE(path.advanceTo({4, Vec3::Constant(std::nan("")), 0}).empty());
+  EXPECT_TRUE(path.advanceTo({5, Vec3(0, 0, 0), INFINITY}).empty());
 }
 
 TEST(Dab, WeighsByTheDistanceToItsPath) {
@@ -126,7 +127,7 @@ TEST(Dab, WeighsByTheDistanceToItsPath) {
   EXPECT_DOUBLE_EQ(weightAt(dab, brush, Vec3(-0.005, 0, 0)), 0.5);
   EXPECT_DOUBLE_EQ(weightAt(dab, brush, Vec3(0.005, 0.006, 0)), 1 - 0.006 / 0.015);
   EXPECT_DOUBLE_EQ(weightAt(dab, brush, Vec3(0.02, 0, 0)), 0.5);
-  EXPECT_DOUBLE_EQ(dab.reach(), 0.025);
+  EXPECT_DOUBLE_EQ(dab.boundingRadius(), 0.025);
 }
 
 } // namespace

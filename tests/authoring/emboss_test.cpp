@@ -1,4 +1,4 @@
-#include "authoring/images/emboss.h"
+#include "authoring/relief/emboss.h"
 
 #include <array>
 
@@ -24,7 +24,7 @@ struct Errors {
   double most = 0, mean = 0;
 };
 
-// Of the vertices against the surface r = R + height(v), which is the displacement along normals.
+// Errors of the vertices against r = R + height(v), the surface displaced along its normals.
 Errors errorsOf(const TriangleMesh& mesh, const std::function<double(double)>& height) {
   Errors errors;
   for (const Vec3& p : mesh.positions) {
@@ -51,7 +51,7 @@ TEST(Emboss, RaisedAndEngravedSpheresAreClosedAndSecondOrder) {
   for (const auto& g : std::vector<std::function<double(double)>>{white, wave}) {
     const auto image = reliefImage(1024, [&](double, double v) { return g(v); });
     for (const double height : {amplitude, -amplitude}) {
-      const std::vector<ReliefSource> sources{sourceOf(mesh, uvs, image, height)};
+      const std::vector<ReliefInput> sources{sourceOf(mesh, uvs, image, height)};
       std::array<Errors, 2> errors;
       for (std::size_t level = 0; level < 2; ++level) {
         Progress progress;
@@ -68,19 +68,19 @@ TEST(Emboss, RaisedAndEngravedSpheresAreClosedAndSecondOrder) {
   }
 }
 
-TEST(Emboss, WithoutReliefIsTheModelItself) {
+TEST(Emboss, ReturnsTheModelWithoutRelief) {
   const TriangleMesh mesh = icosphere(kEmbossed, 30);
   FieldSpec spec;
   spec.resolution = 60;
   Progress progress;
-  const std::vector<ReliefSource> sources{sourceOf(mesh, zones(mesh), nullptr, 1e-3)};
+  const std::vector<ReliefInput> sources{sourceOf(mesh, zones(mesh), nullptr, 1e-3)};
   const TriangleMesh surface = embossed(fieldOf(mesh, spec), mesh, sources, progress);
   EXPECT_TRUE(inspect(surface).watertight);
   EXPECT_LT(errorsOf(surface, [](double) { return 0.0; }).most, 5e-5);
 }
 
 // Cutting through leaves a hole, not a crack.
-TEST(Emboss, StaysClosedWhereEngravingCutsThroughAPlate) {
+TEST(Emboss, StaysClosedIfEngravingCutsThroughAThinWall) {
   const TriangleMesh mesh = box(Vec3(0.06, 0.06, 0.006), 12);
   const auto uvs =
       uvsBy(mesh, [](const Vec3& p) { return Vec2(p.x() / 0.06 + 0.5, p.y() / 0.06 + 0.5); });
@@ -89,7 +89,7 @@ TEST(Emboss, StaysClosedWhereEngravingCutsThroughAPlate) {
   FieldSpec spec;
   spec.voxel = 1e-3;
   Progress progress;
-  const std::vector<ReliefSource> sources{sourceOf(mesh, uvs, disc, -4e-3)};
+  const std::vector<ReliefInput> sources{sourceOf(mesh, uvs, disc, -4e-3)};
   const TriangleMesh surface = embossed(fieldOf(mesh, spec), mesh, sources, progress);
   const MeshReport report = inspect(surface);
   EXPECT_TRUE(report.watertight);
@@ -97,7 +97,7 @@ TEST(Emboss, StaysClosedWhereEngravingCutsThroughAPlate) {
   EXPECT_EQ(static_cast<long>(report.vertices) - edges + static_cast<long>(report.triangles), 0)
       << "a ring has Euler number 0";
   EXPECT_THROW(embossed(fieldOf(mesh, spec), mesh,
-                        std::vector<ReliefSource>{sourceOf(mesh, uvs, disc, -6e-3)}, progress),
+                        std::vector<ReliefInput>{sourceOf(mesh, uvs, disc, -6e-3)}, progress),
                Error);
 }
 

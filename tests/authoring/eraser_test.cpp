@@ -1,4 +1,4 @@
-// What an eraser does not own stays.
+// An eraser keeps mapped textures.
 #include <gtest/gtest.h>
 
 #include "authoring/brush/painter.h"
@@ -7,10 +7,10 @@
 namespace patina {
 namespace {
 
-TEST(Painter, EraserLeavesLaidTexturesWhereTheyAre) {
+TEST(Painter, EraserKeepsMappedTextures) {
   Scene scene = test::sceneOf(icosphere(0.05, 12));
   ObjectPaint laid;
-  laid.textures = std::make_shared<const LaidTextures>(LaidTextures{{{3, 1, {}}}, {}});
+  laid.textures = std::make_shared<const TextureMappings>(TextureMappings{{{3, 1, {}}}, {}});
   scene.objects[0].paint = std::make_shared<const ObjectPaint>(laid);
   const auto surface = test::surfaceOf(scene);
   const Scene now =

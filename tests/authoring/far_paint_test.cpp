@@ -1,4 +1,4 @@
-// What is picked and painted far from the origin is what is picked and painted at it.
+// Picking and painting far from the origin give the same results as at the origin.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -19,17 +19,17 @@ TriangleMesh shifted(TriangleMesh mesh, const Vec3& by) {
   return mesh;
 }
 
-TEST(FarPaint, IsThatOfTheSameThingAtTheOrigin) {
+TEST(FarPaint, IsTheSameAsAtTheOrigin) {
   const TriangleMesh shapes[] = {box(Vec3::Constant(0.05), 1), icosphere(0.03, 12),
                                  torus(0.03, 0.012, 40, 20)};
   const Vec3 places[] = {Vec3(4.5e6, 5.2e6, 300), Vec3(450000, 5400000, 120), Vec3(-1e7, 0, 1e5),
                          Vec3(1e5, -1e5, 1e5)};
   Brush brush = brushOf(Tool::color, 0.016);
-  brush.also.resize(2);
-  brush.also[0].tool = Tool::relief;
-  brush.also[0].value = 5e-4;
-  brush.also[1].tool = Tool::material(MaterialChannel::stiffness);
-  brush.also[1].value = 900;
+  brush.extra_layers.resize(2);
+  brush.extra_layers[0].tool = Tool::relief;
+  brush.extra_layers[0].value = 5e-4;
+  brush.extra_layers[1].tool = Tool::material(MaterialChannel::stiffness);
+  brush.extra_layers[1].value = 900;
   for (const TriangleMesh& mesh : shapes) {
     const Scene near = sceneOf(mesh, 60, 256);
     const auto near_surface = surfaceOf(near);
@@ -60,16 +60,16 @@ TEST(FarPaint, IsThatOfTheSameThingAtTheOrigin) {
         height = std::max(height, std::abs(here.height - there.height));
         stiffness =
             std::max(stiffness, std::abs(here.material.stiffness - there.material.stiffness));
-        // A ray from outside towards a place inside.
+        // A ray from outside towards a point inside.
         const Vec3 eye = 0.2 * Vec3(side(random), side(random), side(random)).normalized();
         const Vec3 way = (0.01 * Vec3(side(random), side(random), side(random)) - eye).normalized();
         const auto hit = firstSurfaceAlong(*near_surface->field, eye, way);
         const auto far_hit = firstSurfaceAlong(*far_surface->field, eye + at, way);
-        if (!hit || !far_hit) continue; // past an edge by a hair
+        if (!hit || !far_hit) continue; // just beyond an edge
         pick = std::max(pick, (*hit + at - *far_hit).norm());
       }
-      // The stroke's own path is rounded to some nanometres, and the grid of what is painted may
-      // lie elsewhere within a voxel.
+      // The path of the stroke is rounded to some nanometres, and the painted grid may be offset
+      // within a voxel.
       EXPECT_LT(color, 0.02) << at.transpose();
       EXPECT_LT(height, 2e-5) << at.transpose();
       EXPECT_LT(stiffness, 20) << at.transpose();

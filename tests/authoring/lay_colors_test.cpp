@@ -1,5 +1,5 @@
-// The colours of a mesh file, laid onto its object: against the colour that each point must have.
-#include "authoring/images/lay_colors.h"
+// Colours of a mesh file on its object, against the expected colour of each point.
+#include "authoring/images/apply_colors.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ Vec3 colorAt(const ObjectPaint& paint, std::size_t face, const Vec3& w) {
   return seen;
 }
 
-// Barycentric coordinates, evenly over a triangle but for a tenth along its edges.
+// Barycentric coordinates, uniform over a triangle except for a tenth along its edges.
 Vec3 placeIn(std::mt19937& random) {
   std::uniform_real_distribution<double> share(0, 1);
   double u = share(random), v = share(random);
@@ -34,7 +34,7 @@ class LayColors : public testing::Test {
   void SetUp() override { folder_ = test::freshFolder("lay colors"); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  // Both ramps are linear, so that what is between texels is known: red to the right, green up.
+  // Both ramps are linear, so values between texels are known: red to the right, green up.
   std::filesystem::path ramp(int side, float blue = 0) {
     Picture picture{side, side, 3, {}};
     for (int j = 0; j < side; ++j)
@@ -51,7 +51,7 @@ class LayColors : public testing::Test {
   std::vector<std::string> warnings_;
 };
 
-TEST_F(LayColors, OfVerticesAreInterpolatedOverEachFace) {
+TEST_F(LayColors, VertexColorsAreInterpolatedOverEachFace) {
   const TriangleMesh mesh = icosphere(0.03, 6);
   MeshColors colors;
   for (const Vec3& p : mesh.positions)
@@ -70,7 +70,7 @@ TEST_F(LayColors, OfVerticesAreInterpolatedOverEachFace) {
   EXPECT_TRUE(warnings_.empty());
 }
 
-TEST_F(LayColors, OfFacesAreConstantInside) {
+TEST_F(LayColors, FaceColorsAreConstantInside) {
   const TriangleMesh mesh = box(Vec3(0.05, 0.04, 0.03), 2);
   MeshColors colors;
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
@@ -89,7 +89,7 @@ TEST_F(LayColors, OfFacesAreConstantInside) {
 }
 
 // Each side of the box shows the whole picture: its own coordinates overlap six times.
-TEST_F(LayColors, OfPicturesAreReadThroughCoordinatesThatOverlap) {
+TEST_F(LayColors, ReadsPicturesThroughOverlappingCoordinates) {
   TriangleMesh mesh = box(Vec3(0.05, 0.04, 0.03), 1);
   MeshColors colors;
   colors.pictures = {{ramp(64), {1, 1}, {0, 0}, true},
@@ -100,7 +100,7 @@ TEST_F(LayColors, OfPicturesAreReadThroughCoordinatesThatOverlap) {
   }
   const auto paint = paintOf(mesh, colors, 512, warnings_);
   ASSERT_TRUE(paint);
-  EXPECT_TRUE(paint->layout.made);
+  EXPECT_TRUE(paint->layout.generated);
   std::mt19937 random(3);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
     for (int trial = 0; trial < 20; ++trial) {
@@ -114,7 +114,7 @@ TEST_F(LayColors, OfPicturesAreReadThroughCoordinatesThatOverlap) {
   EXPECT_TRUE(warnings_.empty());
 }
 
-TEST_F(LayColors, OutsideAPictureItRepeatsOrItsEdgeGoesOn) {
+TEST_F(LayColors, PictureRepeatsOrIsClampedOutside) {
   TriangleMesh mesh = sheet(0.05, 0.05, 1);
   for (const bool repeats : {true, false}) {
     mesh.corner_uvs.assign(mesh.triangles.size(), {Vec2(1.2, 0.3), Vec2(1.8, 0.4), Vec2(1.5, 0.8)});
@@ -127,7 +127,7 @@ TEST_F(LayColors, OutsideAPictureItRepeatsOrItsEdgeGoesOn) {
   }
 }
 
-TEST_F(LayColors, AnImageOfAPicturesOwnSizeHasItsTexels) {
+TEST_F(LayColors, ImageOfThePictureSizeHasItsTexels) {
   TriangleMesh mesh = sheet(0.05, 0.05, 1);
   for (const Triangle& t : mesh.triangles) {
     auto& uv = mesh.corner_uvs.emplace_back();
@@ -138,7 +138,7 @@ TEST_F(LayColors, AnImageOfAPicturesOwnSizeHasItsTexels) {
   colors.pictures.push_back({ramp(1024), {1, 1}, {0, 0}, true});
   colors.picture_of.assign(mesh.triangles.size(), 0);
   const auto paint = paintOf(mesh, colors, 512, warnings_);
-  ASSERT_TRUE(paint && !paint->layout.made);
+  ASSERT_TRUE(paint && !paint->layout.generated);
   ASSERT_EQ(paint->color->width(), 1024);
   for (int j = 0; j < 1024; j += 31)
     for (int i = 0; i < 1024; i += 29)
@@ -146,22 +146,22 @@ TEST_F(LayColors, AnImageOfAPicturesOwnSizeHasItsTexels) {
   EXPECT_TRUE(warnings_.empty());
 }
 
-TEST_F(LayColors, APictureThatIsTooFineIsKeptCoarserWithALine) {
+TEST_F(LayColors, TooFinePictureIsStoredCoarserWithAWarning) {
   TriangleMesh mesh = sheet(0.05, 0.05, 1);
   mesh.corner_uvs.assign(mesh.triangles.size(), {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)});
   mesh.corner_uvs[1] = {Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
   MeshColors colors;
-  colors.pictures.push_back({ramp(kMostColorTexels + 512), {1, 1}, {0, 0}, true});
+  colors.pictures.push_back({ramp(kMaxColorTexels + 512), {1, 1}, {0, 0}, true});
   colors.picture_of.assign(mesh.triangles.size(), 0);
   const auto paint = paintOf(mesh, colors, 512, warnings_);
   ASSERT_TRUE(paint);
-  EXPECT_EQ(paint->color->width(), kMostColorTexels);
+  EXPECT_EQ(paint->color->width(), kMaxColorTexels);
   ASSERT_EQ(warnings_.size(), 1u);
   EXPECT_NE(warnings_[0].find("more than 2048 texels a side"), std::string::npos);
 }
 
 // 2560 texels become 1280, which the image of 2048 takes whole.
-TEST_F(LayColors, APictureThatIsKeptCoarserStaysWhereItWas) {
+TEST_F(LayColors, CoarserPictureKeepsItsPosition) {
   TriangleMesh mesh = sheet(0.05, 0.05, 1);
   mesh.corner_uvs = {{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, {Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)}};
   MeshColors colors;
@@ -175,7 +175,7 @@ TEST_F(LayColors, APictureThatIsKeptCoarserStaysWhereItWas) {
                 1 - 0.05 * trial, 1e-3);
 }
 
-TEST_F(LayColors, OfManyFacesThatNeedMoreTexelsAreKeptCoarserWithALine) {
+TEST_F(LayColors, FaceColorsAreStoredCoarserWithAWarningIfTexelsAreFew) {
   const TriangleMesh mesh = sheet(0.05, 0.05, 420);
   MeshColors colors;
   colors.faces.assign(mesh.triangles.size(), {1, 0, 0, 1});
@@ -184,7 +184,7 @@ TEST_F(LayColors, OfManyFacesThatNeedMoreTexelsAreKeptCoarserWithALine) {
   EXPECT_NE(warnings_[0].find("2048 x 2048"), std::string::npos);
 }
 
-TEST_F(LayColors, TheImageIsNoSmallerThanTheSceneAsksFor) {
+TEST_F(LayColors, ImageIsNoSmallerThanTheSceneRequests) {
   const TriangleMesh mesh = box(Vec3(0.05, 0.04, 0.03), 1);
   MeshColors colors;
   colors.faces.assign(mesh.triangles.size(), {1, 0, 0, 1});
@@ -192,7 +192,7 @@ TEST_F(LayColors, TheImageIsNoSmallerThanTheSceneAsksFor) {
     EXPECT_EQ(paintOf(mesh, colors, least, warnings_)->color->width(), least);
 }
 
-TEST_F(LayColors, APictureThatCannotBeReadLeavesTheFacesTheirOwnColour) {
+TEST_F(LayColors, UnreadablePictureLeavesTheFacesTheirColor) {
   TriangleMesh mesh = box(Vec3(0.05, 0.04, 0.03), 1);
   mesh.corner_uvs.assign(mesh.triangles.size(), {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)});
   MeshColors colors;
@@ -207,7 +207,7 @@ TEST_F(LayColors, APictureThatCannotBeReadLeavesTheFacesTheirOwnColour) {
   EXPECT_LT((colorAt(*paint, 3, Vec3::Constant(1.0 / 3)) - Vec3(0, 1, 0)).norm(), 1e-6);
 }
 
-TEST_F(LayColors, CoordinatesThatAreNotFiniteShowNothingAndHarmNoOther) {
+TEST_F(LayColors, NonFiniteCoordinatesShowNothingAndLeaveOtherFacesIntact) {
   TriangleMesh mesh = box(Vec3(0.05, 0.04, 0.03), 1);
   mesh.corner_uvs.assign(mesh.triangles.size(), {Vec2(0.1, 0.1), Vec2(0.9, 0.1), Vec2(0.1, 0.9)});
   mesh.corner_uvs[0][1].x() = std::numeric_limits<double>::quiet_NaN();
@@ -225,7 +225,7 @@ TEST_F(LayColors, CoordinatesThatAreNotFiniteShowNothingAndHarmNoOther) {
   EXPECT_NEAR(colorAt(*paint, 5, Vec3::Constant(1.0 / 3)).x(), 1.1 / 3, 0.01);
 }
 
-TEST_F(LayColors, AMeshWithoutColoursHasNoPaint) {
+TEST_F(LayColors, MeshWithoutColorsHasNoPaint) {
   EXPECT_EQ(paintOf(icosphere(0.03, 3), {}, 512, warnings_), nullptr);
   EXPECT_TRUE(warnings_.empty());
 }

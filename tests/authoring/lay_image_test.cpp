@@ -1,4 +1,4 @@
-#include "authoring/images/lay_image.h"
+#include "authoring/images/apply_image.h"
 
 #include <gtest/gtest.h>
 
@@ -52,13 +52,13 @@ TriangleMesh mappedSheet(double times, double mirrored) {
   return mesh;
 }
 
-// T-K21e: the right way round, seen along each axis.
+// T-K21e: the picture is upright, seen along each axis.
 TEST(LayImage, ProjectsUprightAndNotMirrored) {
   const Scene scene = sceneOf(box(Vec3(0.1, 0.08, 0.06), 5), 60, 256);
   const auto surface = surfaceOf(scene);
   struct View {
     Projection projection;
-    Vec3 on, right, up; // the middle of the face that is seen
+    Vec3 on, right, up; // the middle of the visible face
   };
   for (const View& view :
        {View{Projection::z, Vec3(0, 0, 0.03), Vec3(0.05, 0, 0), Vec3(0, 0.04, 0)},
@@ -83,7 +83,7 @@ TEST(LayImage, FollowsTheMeshsCoordinatesRepeatedAndMirrored) {
     for (const double mirrored : {1.0, -1.0}) {
       const Scene scene = sceneOf(mappedSheet(times, mirrored), 60, 512);
       const auto surface = surfaceOf(scene);
-      EXPECT_EQ(surface->objects[0].layout.made, times > 1);
+      EXPECT_EQ(surface->objects[0].layout.generated, times > 1);
       const Scene after = with(
           scene, laid(*surface, scene, 0, ramp(64, 64), Projection::mapped, PictureTarget::color));
       for (double x = -0.0485; x < 0.05; x += 0.0037) {
@@ -95,7 +95,7 @@ TEST(LayImage, FollowsTheMeshsCoordinatesRepeatedAndMirrored) {
     }
 }
 
-TEST(LayImage, WhatThePictureDoesNotCoverStays) {
+TEST(LayImage, KeepsTexelsOutsideThePicture) {
   const Scene scene = sceneOf(box(Vec3(0.1, 0.1, 0.1), 3));
   const auto surface = surfaceOf(scene);
   const auto lay = [&](const Scene& on, const Picture& picture, PictureTarget target) {
@@ -118,7 +118,7 @@ TEST(LayImage, WhatThePictureDoesNotCoverStays) {
   EXPECT_TRUE(same(*clear.objects[0].paint->relief, *raised.objects[0].paint->relief));
 }
 
-// A picture finer than the image is averaged, not picked from.
+// A picture finer than the image is averaged, not point-sampled.
 TEST(LayImage, FinePicturesDoNotAlias) {
   Picture picture{1024, 1024, 1, {}};
   for (int j = 0; j < 1024; ++j)
@@ -131,7 +131,7 @@ TEST(LayImage, FinePicturesDoNotAlias) {
     EXPECT_NEAR(valuesAt(*surface, after, Vec3(x, 0.4 * x, 0.01)).height, 0.5e-3, 0.1e-3);
 }
 
-TEST(LayImage, MisuseIsRefused) {
+TEST(LayImage, RejectsMisuse) {
   const Scene scene = sceneOf(box(Vec3(0.1, 0.1, 0.02), 3));
   const auto surface = surfaceOf(scene);
   const auto lay = [&](const PaintSurface& on, const Picture& picture, Projection projection) {

@@ -1,10 +1,10 @@
-// Meshes that came with coordinates or indices which once left parts of them without paint.
+// Meshes whose coordinates or indices once left parts of them without paint.
 #include <functional>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "authoring/images/lay_image.h"
+#include "authoring/images/apply_image.h"
 #include "authoring/paint_fixture.h"
 
 namespace patina {
@@ -16,8 +16,8 @@ using test::strokeAt;
 using test::surfaceOf;
 using test::valuesAt;
 
-// Each face by the two axes that it looks along least, over the mesh's box: all sides of a box lie
-// on the whole square.
+// Projects each face along its dominant axis over the mesh's box: all sides of a box cover the
+// whole square.
 TriangleMesh boxMapped(TriangleMesh mesh, double times = 1) {
   const Box3 box = bounds(mesh);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -60,12 +60,12 @@ TriangleMesh twice(const TriangleMesh& mesh, bool other_way) {
   return joined(mesh, copy);
 }
 
-// Every face with corners of its own at the same places.
+// Every face has its own corners at the same positions.
 TriangleMesh loose(const TriangleMesh& mesh) {
   return withShrunkenTriangles(mesh, 0);
 }
 
-// Random places of all faces are painted, by a brush that goes everywhere.
+// A brush covers everything; then random points of all faces must be painted.
 void expectPaintedEverywhere(const TriangleMesh& mesh, const std::string& name) {
   const Scene scene = sceneOf(mesh, 40, 512);
   const auto surface = surfaceOf(scene);
@@ -113,7 +113,7 @@ TEST(PaintEverywhere, OneSideOfABoxMappedBoxIsPaintedAlone) {
   for (const int cells : {1, 4}) {
     const Scene scene = sceneOf(boxMapped(box(Vec3::Constant(2 * half), cells)), 60, 256);
     const auto surface = surfaceOf(scene);
-    EXPECT_TRUE(surface->objects[0].layout.made);
+    EXPECT_TRUE(surface->objects[0].layout.generated);
     for (int side = 0; side < 6; ++side) {
       const auto middle = [&](int of) {
         return Vec3((of % 2 ? half : -half) * Vec3::Unit(of / 2));
@@ -128,9 +128,8 @@ TEST(PaintEverywhere, OneSideOfABoxMappedBoxIsPaintedAlone) {
   }
 }
 
-// The picture that came with a mesh is seen where the mesh's coordinates say, though the paint has
-// an atlas of its own.
-TEST(PaintEverywhere, APictureIsStillLaidByTheMeshsOwnCoordinates) {
+// The mesh's own picture appears at the mesh's coordinates, although the paint has its own atlas.
+TEST(PaintEverywhere, PictureUsesTheMeshCoordinates) {
   Picture picture;
   picture.width = picture.height = 16;
   picture.channels = 3;
@@ -140,7 +139,7 @@ TEST(PaintEverywhere, APictureIsStillLaidByTheMeshsOwnCoordinates) {
   const TriangleMesh mesh = boxMapped(box(Vec3(0.05, 0.04, 0.03), 3));
   Scene scene = sceneOf(mesh, 60, 512);
   const auto surface = surfaceOf(scene);
-  ASSERT_TRUE(surface->objects[0].layout.made);
+  ASSERT_TRUE(surface->objects[0].layout.generated);
   scene.objects[0].paint =
       laid(*surface, scene, 0, picture, Projection::mapped, PictureTarget::color);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {

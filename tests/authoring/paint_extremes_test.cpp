@@ -1,4 +1,4 @@
-// The painting list of the extreme cases.
+// Extreme cases of painting.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ using test::strokeAt;
 using test::surfaceOf;
 using test::valuesAt;
 
-TEST(PaintExtremes, RadiusOfNothingPaintsNothing) {
+TEST(PaintExtremes, ZeroRadiusPaintsNothing) {
   const Scene scene = sceneOf(icosphere(kR, 12));
   const auto surface = surfaceOf(scene);
   for (const Tool tool : {Tool::color, Tool::relief, Tool::material(MaterialChannel::stiffness)}) {
@@ -61,7 +61,7 @@ TEST(PaintExtremes, BrushBeyondTheObjectPaintsAllOfIt) {
   brush.value = 800;
   const Scene hard = painted(surface, scene, strokeAt(brush, Vec3(0.055, 0, 0)));
   EXPECT_NEAR(valuesAt(*surface, hard, Vec3(-0.055, 0, 0)).material.stiffness, 800, 1e-9);
-  // No more than the blocks about the surface.
+  // The map has no more than the blocks near the surface.
   EXPECT_LE(hard.objects[0].paint->material->blocks().size(), surface->field->blockCount());
 }
 
@@ -93,7 +93,7 @@ TEST(PaintExtremes, DegenerateCoordinatesDoNoHarm) {
   }
 }
 
-TEST(PaintExtremes, StrokeGoesOverFromOneObjectToAnother) {
+TEST(PaintExtremes, StrokeContinuesFromOneObjectToAnother) {
   const Pose beside(Eigen::Translation3d(0.05, 0, 0));
   const Scene scene = sceneOf({objectOf("a", box(Vec3(0.048, 0.04, 0.01), 6)),
                                objectOf("b", box(Vec3(0.048, 0.04, 0.01), 6), beside)});
@@ -127,7 +127,7 @@ TEST(PaintExtremes, ThinWallIsPaintedOnBothSidesOrOnTheFrontAlone) {
   EXPECT_EQ(valuesAt(*surface, front, -p).color[3], 0);
 }
 
-TEST(PaintExtremes, SamplesThatAreNotFiniteAreRefusedInFilesAndPassedOverLive) {
+TEST(PaintExtremes, NonFiniteSamplesAreRejectedInFilesAndIgnoredLive) {
   const Scene scene = sceneOf(icosphere(kR, 12));
   const auto surface = surfaceOf(scene);
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
@@ -160,7 +160,7 @@ TEST(PaintExtremes, ForceSpikesStayWithinTheLargestRadius) {
   const auto surface = surfaceOf(scene);
   Brush brush = brushOf(Tool::color, 0.005);
   brush.radius_per_force = 0.001;
-  brush.most_radius = 0.01;
+  brush.max_radius = 0.01;
   Stroke stroke{brush, {{0, kTop, 1}, {0.001, kTop, 1e6}, {0.5, kTop, 1e6}}};
   const Scene after = painted(surface, scene, stroke);
   const TiledImage& image = *after.objects[0].paint->color;
@@ -187,7 +187,7 @@ TEST(PaintExtremes, MisuseIsRefused) {
 }
 
 // Ten minutes at 60 Hz over the whole object: images and maps grow no larger than the object, and
-// the first version is still what it was.
+// the first version is unchanged.
 TEST(PaintExtremes, TenMinutesOfPaintingAreBounded) {
   const Scene scene = sceneOf(icosphere(kR, 5), 40, 64);
   const auto surface = surfaceOf(scene);

@@ -1,4 +1,4 @@
-// A scene made ready for the brush, without the program's own compile step.
+// A scene prepared for the brush without the program's compile step.
 #pragma once
 
 #include <memory>
@@ -7,12 +7,12 @@
 #include "authoring/brush/painter.h"
 #include "authoring/brush/surface_values.h"
 #include "authoring/brush/volume_fill.h"
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/shapes.h"
 
 namespace patina::test {
 
-// The ball that is painted: its radius [m] and where it is met from above.
+// The painted ball: its radius [m] and the contact point from above.
 constexpr double kR = 0.05;
 inline const Vec3 kTop(0, 0, kR);
 
@@ -75,7 +75,7 @@ inline Stroke strokeAlong(const Brush& brush, const Vec3& from, const Vec3& to, 
   return stroke;
 }
 
-// What is painted at the surface's point nearest to p [m, world].
+// Returns the painted values at the surface point nearest to p [m, world].
 inline SurfaceValues valuesAt(const PaintSurface& surface, const Scene& scene, const Vec3& p,
                               std::size_t object = 0) {
   ClosestPoint best;

@@ -1,4 +1,4 @@
-// Several layers by one stroke, and where a dab starts (K15, K17).
+// Several layers in one stroke, and the start point of a dab (K15, K17).
 #include <gtest/gtest.h>
 
 #include "authoring/paint_fixture.h"
@@ -15,8 +15,8 @@ using test::strokeAlong;
 using test::strokeAt;
 using test::surfaceOf;
 
-// The paper's brush: what each layer would leave by itself, by one stroke.
-TEST(Painter, LayersOfOneStrokeAreThoseOfAStrokeEach) {
+// The published brush: the effect of each layer alone, in one stroke.
+TEST(Painter, LayersOfOneStrokeEqualOneStrokeEach) {
   const Scene scene = sceneOf(icosphere(kR, 12), 60, 256);
   const auto surface = surfaceOf(scene);
   for (const StrokeMode mode : {StrokeMode::max, StrokeMode::build_up}) {
@@ -31,9 +31,9 @@ TEST(Painter, LayersOfOneStrokeAreThoseOfAStrokeEach) {
       BrushLayer layer = brush;
       layer.tool = tool;
       layer.value = value;
-      if (tool != brush.tool) brush.also.push_back(layer);
+      if (tool != brush.tool) brush.extra_layers.push_back(layer);
       Brush one = brush;
-      one.also.clear();
+      one.extra_layers.clear();
       static_cast<BrushLayer&>(one) = layer;
       apart = painted(surface, apart, strokeAlong(one, kTop, Vec3(kR, 0, 0), 7));
     }
@@ -47,8 +47,8 @@ TEST(Painter, LayersOfOneStrokeAreThoseOfAStrokeEach) {
   }
 }
 
-// A sheet thinner than the field can tell: what is nearest may be its far side.
-TEST(Painter, SeedOnTheSegmentPaintsTheSideThatTheTipCameThrough) {
+// On a sheet thinner than the field resolves, the nearest point may lie on the far side.
+TEST(Painter, SeedOnTheSegmentPaintsTheSideOfTheTip) {
   const double thick = 2e-4;
   const Scene scene = sceneOf(box(Vec3(0.05, 0.05, thick), 4), 60, 256);
   const auto surface = surfaceOf(scene);
@@ -67,11 +67,11 @@ TEST(Painter, SeedOnTheSegmentPaintsTheSideThatTheTipCameThrough) {
   const auto nearest = sides(painted(surface, scene, stroke));
   EXPECT_EQ(nearest.first, 0);
   EXPECT_GT(nearest.second, 100);
-  stroke.brush.seed = Seed::segment;
-  const auto pierced = sides(painted(surface, scene, stroke));
-  EXPECT_GT(pierced.first, 100);
-  EXPECT_EQ(pierced.second, 0);
-  stroke.samples[0].tip.reset(); // without a tip there is no way
+  stroke.brush.anchor = DabAnchor::segment;
+  const auto segmentHit = sides(painted(surface, scene, stroke));
+  EXPECT_GT(segmentHit.first, 100);
+  EXPECT_EQ(segmentHit.second, 0);
+  stroke.samples[0].tip.reset(); // no segment without a tip
   EXPECT_EQ(sides(painted(surface, scene, stroke)), nearest);
 }
 

@@ -24,8 +24,8 @@ Scene plate() {
   return sceneOf(box(Vec3(0.1, 0.1, 2 * kPlateTop), 6), 75);
 }
 
-// T-K22b: at any place in its cell.
-TEST(PaintMaterial, HardBrushOfTwoVoxelsGivesExactlyTheStiffnessItWasTold) {
+// T-K22b: the result is the same at any position in its cell.
+TEST(PaintMaterial, HardBrushOfTwoVoxelsGivesExactlyTheRequestedStiffness) {
   const Scene scene = plate();
   const auto surface = surfaceOf(scene, false);
   Brush brush =
@@ -40,7 +40,7 @@ TEST(PaintMaterial, HardBrushOfTwoVoxelsGivesExactlyTheStiffnessItWasTold) {
   }
 }
 
-// T-K22b: a brush that falls off at once gives .67 of it over nothing, on average over the cell.
+// T-K22b: a brush without a hard core gives .67 of the value over zero, on average over the cell.
 TEST(PaintMaterial, SoftBrushOfTwoVoxelsGivesTwoThirds) {
   const Scene scene = sceneOf(icosphere(0.05, 12), 75);
   const auto surface = surfaceOf(scene, false);
@@ -89,7 +89,7 @@ TEST(PaintMaterial, StaysWithAnObjectThatMoves) {
   const double there =
       valuesAt(*surface, moved, pose * Vec3(0.002, 0, kPlateTop)).material.stiffness;
   EXPECT_GT(there, 700);
-  // More paint on top of it, on the grid of the first stroke.
+  // More paint is added on the grid of the first stroke.
   const Scene more =
       painted(surface, moved,
               strokeAt(brushOf(Tool::material(MaterialChannel::stiffness), 0.02, 900),
@@ -99,8 +99,8 @@ TEST(PaintMaterial, StaysWithAnObjectThatMoves) {
   EXPECT_GE(valuesAt(*surface, more, pose * Vec3(0.002, 0, kPlateTop)).material.stiffness, there);
 }
 
-// K22: a lattice's covering radius is .866 h; what is smaller can fall between the nodes.
-TEST(PaintMaterial, BrushBetweenTheNodesIsTold) {
+// K22: a lattice's covering radius is .866 h; a smaller brush can fall between the nodes.
+TEST(PaintMaterial, BrushBetweenTheNodesIsReported) {
   const Scene scene = plate();
   const auto surface = surfaceOf(scene, false);
   const FieldGrid& grid = surface->field->grid;
@@ -137,7 +137,7 @@ TEST(PaintMaterial, AddedStiffnessStaysWithinItsRange) {
   EXPECT_GE(valuesAt(*surface, now, p).material.static_friction, 0);
 }
 
-TEST(PaintMaterial, AddsToWhatIsFeltWithoutPaint) {
+TEST(PaintMaterial, AddsToTheUnpaintedValue) {
   const Scene scene = plate(); // 500 N/m
   const auto surface = surfaceOf(scene, false);
   Brush brush = brushOf(Tool::material(MaterialChannel::stiffness), 0.02, -300);
@@ -147,7 +147,7 @@ TEST(PaintMaterial, AddsToWhatIsFeltWithoutPaint) {
   Scene now = painted(surface, scene, strokeAt(brush, p));
   EXPECT_NEAR(valuesAt(*surface, now, p).material.stiffness, 200, 1e-4);
   now = painted(surface, now, strokeAt(brush, p));
-  const double least = rangeOf(MaterialChannel::stiffness).least;
+  const double least = rangeOf(MaterialChannel::stiffness).min;
   EXPECT_NEAR(valuesAt(*surface, now, p).material.stiffness, least, 1e-4);
 }
 
@@ -174,7 +174,7 @@ TEST(PaintMaterial, SmoothingLowersTheSteepestSlope) {
   EXPECT_NEAR(valuesAt(*surface, smoother, Vec3(0, 0, kPlateTop)).material.stiffness, 2000, 1);
 }
 
-// The far side of a wall of several voxels keeps what it was.
+// The far side of a wall of several voxels keeps its values.
 TEST(PaintMaterial, FrontOnlyLeavesTheNodesOfTheFarSide) {
   const Scene scene = sceneOf(box(Vec3(0.1, 0.1, 0.008), 6), 100);
   const auto surface = surfaceOf(scene, false);

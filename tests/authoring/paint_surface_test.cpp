@@ -14,7 +14,7 @@ using test::sceneOf;
 using test::strokeAt;
 using test::surfaceOf;
 
-TEST(PaintSurface, HoldsNoImagesUntilAsked) {
+TEST(PaintSurface, HoldsNoImagesUntilRequested) {
   const Scene scene = sceneOf(icosphere(0.05, 8));
   const auto bare = surfaceOf(scene, false);
   EXPECT_FALSE(hasImages(*bare));
@@ -40,14 +40,14 @@ TEST(PaintSurface, ImagesKeepTheSizeAndLayoutTheyWerePaintedIn) {
   EXPECT_EQ(more.objects[0].paint->relief->width(), 128);
   EXPECT_EQ(more.objects[0].paint->color, after.objects[0].paint->color);
   EXPECT_EQ(more.objects[1].paint, nullptr);
-  // What is there already is not made again.
+  // Existing images are kept.
   Progress progress;
   const auto third = withImages(*second, more, progress);
   EXPECT_EQ(third->objects[0].texels, second->objects[0].texels);
   EXPECT_EQ(third->objects[1].texels, second->objects[1].texels);
 }
 
-TEST(PaintSurface, CanBeCancelledAndRefusesAnotherScenesMesh) {
+TEST(PaintSurface, CanBeCancelledAndRejectsTheMeshOfAnotherScene) {
   const Scene scene = sceneOf(icosphere(0.05, 8));
   const auto surface = surfaceOf(scene, false);
   Progress cancelled;
@@ -59,7 +59,7 @@ TEST(PaintSurface, CanBeCancelledAndRefusesAnotherScenesMesh) {
   EXPECT_THROW(paintSurface(other, surface->mesh, surface->field, progress), std::invalid_argument);
 }
 
-TEST(SurfaceValues, AreThoseOfTheSceneWhereNothingIsPainted) {
+TEST(SurfaceValues, EqualTheSceneValuesWithoutPaint) {
   Scene scene = sceneOf(icosphere(0.05, 8));
   scene.haptics.stiffness = 432;
   scene.haptics.friction = Friction{0.5, 0.25};

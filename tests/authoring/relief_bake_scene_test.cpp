@@ -22,7 +22,7 @@ std::shared_ptr<const TiledImage> white() {
   return reliefImage(64, [](double, double) { return 1.0; });
 }
 
-// Depth grows on the way in, without a jump, from outside to where coarse nodes blunt the middle.
+// Depth grows monotonically from outside to the centre, where the coarse nodes flatten it.
 TEST(BakedRelief, DepthIsContinuousThroughTheEndOfTheBand) {
   const TriangleMesh mesh = icosphere(kBaked, 12);
   FieldSpec spec;
@@ -30,7 +30,7 @@ TEST(BakedRelief, DepthIsContinuousThroughTheEndOfTheBand) {
   const auto base = fieldOf(mesh, spec);
   const double h = base->grid.voxel;
   for (const double voxels : {4.0, -4.0, 0.0}) {
-    const std::vector<ReliefSource> sources{
+    const std::vector<ReliefInput> sources{
         sourceOf(mesh, uvsBy(mesh, onSphere), white(), voxels * h)};
     const auto field = bakeOf(base, mesh, sources).baked(sources);
     for (const Sampler kind : {Sampler::kim, Sampler::high}) {
@@ -55,14 +55,14 @@ TEST(BakedRelief, DepthIsContinuousThroughTheEndOfTheBand) {
   }
 }
 
-// Beyond the band, too, no point is promised to be farther from the relief than it is.
+// Outside the band, too, the value never exceeds the distance to the relief.
 TEST(BakedRelief, OutsideTheBandTheFieldIsALowerBound) {
   const TriangleMesh mesh = icosphere(kBaked, 12);
   FieldSpec spec;
   spec.resolution = 100;
   const auto base = fieldOf(mesh, spec);
   const double h = base->grid.voxel, raised = 4;
-  const std::vector<ReliefSource> sources{
+  const std::vector<ReliefInput> sources{
       sourceOf(mesh, uvsBy(mesh, onSphere), white(), raised * h)};
   const auto field = bakeOf(base, mesh, sources).baked(sources);
   const FieldSampler sampler(*field, Sampler::kim);
@@ -77,10 +77,10 @@ TEST(BakedRelief, OutsideTheBandTheFieldIsALowerBound) {
     ASSERT_LE(sample.phi, exact + 0.1);
     beyond += sample.phi > field->band;
   }
-  EXPECT_GT(beyond, 1000); // more is known than that it is beyond
+  EXPECT_GT(beyond, 1000); // the bound exceeds the band
 }
 
-TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
+TEST(BakedRelief, MovesOnlyItsObject) {
   const std::vector<TriangleMesh> meshes{movedBy(icosphere(kBaked, 12), Vec3(-0.016, 0, 0)),
                                          movedBy(icosphere(kBaked, 12), Vec3(0.016, 0, 0))};
   for (const bool redistance : {false, true}) {
@@ -89,8 +89,9 @@ TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
     const auto uvs =
         uvsBy(meshes[1], [](const Vec3& p) { return onSphere(p - Vec3(0.016, 0, 0)); });
     const auto halves = reliefImage(64, [](double, double v) { return v < 0.5 ? 1.0 : 0.25; });
-    // The first object has a layout but no image; faces of the second are those of the joint mesh.
-    const std::vector<ReliefSource> sources{
+    // The first object has a layout but no image; faces of the second are those of the combined
+    // mesh.
+    const std::vector<ReliefInput> sources{
         {0, first, uvsBy(meshes[0], onSphere), nullptr, 1e-3},
         {first, static_cast<std::int32_t>(uvs->size()), uvs, halves, 1e-3}};
     const ReliefBake bake = bakeOf(m.field, m.joint, sources);
@@ -103,7 +104,7 @@ TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
         const float before = old_phi[n], after = phi[n];
         const std::int32_t face = m.field->face[slot]->at(n);
-        const bool moves = face >= first && std::abs(before) < kBeyondBand;
+        const bool moves = face >= first && std::abs(before) < kBackground;
         moved += moves;
         const double z = m.field->grid.origin.z() +
                          m.field->grid.voxel * (kBlockSide * m.field->block_at[slot][2] +
@@ -117,19 +118,19 @@ TEST(BakedRelief, MovesOnlyTheObjectThatItLiesOn) {
 
     auto flat = sources;
     flat[1].image = nullptr;
-    EXPECT_EQ(bake.rebaked(*field, sources, flat)->distance, m.field->distance);
-    EXPECT_EQ(bake.rebaked(*field, sources, flat)->sample, m.field->sample);
+    EXPECT_EQ(bake.updateBaked(*field, sources, flat)->distance, m.field->distance);
+    EXPECT_EQ(bake.updateBaked(*field, sources, flat)->sample, m.field->sample);
   }
 }
 
-// An object without a layout costs nothing and stays as it is.
-TEST(BakedRelief, NeedsNoLayoutWhereThereIsNoRelief) {
+// An object without a layout costs nothing and is unchanged.
+TEST(BakedRelief, NeedsNoLayoutWithoutRelief) {
   const std::vector<TriangleMesh> meshes{movedBy(icosphere(kBaked, 6), Vec3(-0.03, 0, 0)),
                                          movedBy(icosphere(kBaked, 6), Vec3(0.03, 0, 0))};
   const MergedShapes m = mergedShapes(meshes, 0x1p-9);
   const auto faces = static_cast<std::int32_t>(meshes[0].triangles.size());
-  std::vector<ReliefSource> sources{{0, faces, nullptr, nullptr, 1e-3},
-                                    {faces, faces, nullptr, nullptr, 1e-3}};
+  std::vector<ReliefInput> sources{{0, faces, nullptr, nullptr, 1e-3},
+                                   {faces, faces, nullptr, nullptr, 1e-3}};
   const std::size_t none = bakeOf(m.field, m.joint, sources).bytes();
   sources[1].uvs = uvsBy(meshes[1], [](const Vec3& p) { return onSphere(p - Vec3(0.03, 0, 0)); });
   const std::size_t one = bakeOf(m.field, m.joint, sources).bytes();

@@ -36,7 +36,7 @@ bool sameBlocks(const std::vector<std::shared_ptr<const Block>>& a,
 }
 
 bool sameBits(const SurfaceField& a, const SurfaceField& b) {
-  return a.band == b.band && a.top == b.top && a.face == b.face &&
+  return a.band == b.band && a.block_index == b.block_index && a.face == b.face &&
          sameBlocks(a.distance, b.distance) && sameBlocks(a.sample, b.sample) &&
          a.coarse.size() == b.coarse.size() &&
          std::memcmp(a.coarse.data(), b.coarse.data(), a.coarse.size() * sizeof(CoarseNode)) == 0;
@@ -55,7 +55,7 @@ double constant(double, double) {
   return 1;
 }
 
-// A sphere with the layout that any mesh without coordinates gets.
+// A sphere with the generated layout of a mesh without coordinates.
 struct Sphere {
   TriangleMesh mesh;
   std::shared_ptr<const CornerUvs> uvs;
@@ -68,8 +68,8 @@ struct Sphere {
     spec.band = band;
     field = fieldOf(mesh, spec);
   }
-  std::vector<ReliefSource> with(std::shared_ptr<const TiledImage> image,
-                                 double height = 1e-3) const {
+  std::vector<ReliefInput> with(std::shared_ptr<const TiledImage> image,
+                                double height = 1e-3) const {
     return {sourceOf(mesh, uvs, std::move(image), height)};
   }
 };
@@ -92,7 +92,7 @@ struct Slab {
   }
   std::shared_ptr<const SurfaceField> baked(std::shared_ptr<const TiledImage> image,
                                             double height) const {
-    const std::vector<ReliefSource> sources{sourceOf(mesh, uvs, std::move(image), height)};
+    const std::vector<ReliefInput> sources{sourceOf(mesh, uvs, std::move(image), height)};
     return bakeOf(field, mesh, sources).baked(sources);
   }
   double heightAt(const SurfaceField& of, double x, double y) const {
@@ -101,8 +101,8 @@ struct Slab {
   }
 };
 
-// T-K21a. h^2 / (4 R) of the samples, and what the facets lie below the sphere.
-TEST(ReliefBake, OfAConstantGrowsASphereByTheHeight) {
+// T-K21a. The bound is h^2 / (4 R) of the samples plus the depth of the facets below the sphere.
+TEST(ReliefBake, ConstantReliefGrowsASphereByTheHeight) {
   const Sphere sphere(80, 80);
   const double h = sphere.field->grid.voxel;
   double sagitta = 0;
@@ -124,8 +124,8 @@ TEST(ReliefBake, OfAConstantGrowsASphereByTheHeight) {
   }
 }
 
-// White through any layout is one height: no node may see the black between the charts (K16).
-TEST(ReliefBake, NoSeamShowsThroughPaintThatCoversTheSurface) {
+// White in any layout is one height: no node may read the black between the charts (K16).
+TEST(ReliefBake, SeamsAreInvisibleUnderFullPaint) {
   const Sphere sphere;
   const int size = 128;
   const TexelMap texels = texelMap(*sphere.uvs, size, size);
@@ -140,7 +140,7 @@ TEST(ReliefBake, NoSeamShowsThroughPaintThatCoversTheSurface) {
     const auto old_phi = sphere.field->distance[slot]->phi(), phi = field->distance[slot]->phi();
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
       const float before = old_phi[n], after = phi[n];
-      if (!(std::abs(before) < kBeyondBand)) {
+      if (!(std::abs(before) < kBackground)) {
         EXPECT_EQ(before, after);
         continue;
       }
@@ -153,7 +153,7 @@ TEST(ReliefBake, NoSeamShowsThroughPaintThatCoversTheSurface) {
 }
 
 // T-K21b, F8: between nodes a crest is cut off.
-TEST(ReliefBake, OfACosineLosesWhatTheGridLoses) {
+TEST(ReliefBake, CosineLosesTheAttenuationOfTheGrid) {
   const double voxel = 1e-3, amplitude = 0.2e-3;
   const Slab slab(voxel);
   const FieldGrid& grid = slab.field->grid;
@@ -175,7 +175,7 @@ TEST(ReliefBake, OfACosineLosesWhatTheGridLoses) {
 }
 
 // T-K21e
-TEST(ReliefBake, ShowsTheImageTheRightWayRound) {
+TEST(ReliefBake, ImageIsUprightAndNotMirrored) {
   const Slab slab(2e-3);
   const auto field =
       slab.baked(reliefImage(64,
@@ -214,7 +214,7 @@ TEST(ReliefBake, DirectionTiltsByTheSlopeOfARamp) {
 }
 
 // T-K21c, T-K21d
-TEST(ReliefBake, IsAlwaysMadeFromTheBase) {
+TEST(ReliefBake, StartsFromTheBaseEachTime) {
   const Sphere sphere;
   const auto waves = reliefImage(128, [](double u, double v) { return std::sin(30 * u + 20 * v); });
   const auto sources = sphere.with(waves);
@@ -223,7 +223,7 @@ TEST(ReliefBake, IsAlwaysMadeFromTheBase) {
   const auto once = bake.baked(sources), twice = bake.baked(sources);
   EXPECT_TRUE(sameBits(*once, *twice));
   EXPECT_FALSE(sameBits(*once, *base));
-  EXPECT_TRUE(sameBits(*bake.rebaked(*once, sources, sources), *once));
+  EXPECT_TRUE(sameBits(*bake.updateBaked(*once, sources, sources), *once));
 
   auto black = std::make_shared<TiledImage>(128, 128, 1);
   for (std::size_t i = 0; i < black->tileCount(); ++i) black->writable(i);
@@ -231,12 +231,12 @@ TEST(ReliefBake, IsAlwaysMadeFromTheBase) {
                            sphere.with(std::make_shared<TiledImage>(64, 64, 1))}) {
     EXPECT_TRUE(sameBits(*bake.baked(flat), *base));
     EXPECT_EQ(sharedBlocks(*bake.baked(flat), *base), base->blockCount());
-    EXPECT_TRUE(sameBits(*bake.rebaked(*once, sources, flat), *base));
-    EXPECT_TRUE(sameBits(*bake.rebaked(*base, flat, sources), *once));
+    EXPECT_TRUE(sameBits(*bake.updateBaked(*once, sources, flat), *base));
+    EXPECT_TRUE(sameBits(*bake.updateBaked(*base, flat, sources), *once));
   }
 }
 
-// Samples of a version are those that all of it would get.
+// Samples of a version equal those computed for the whole field.
 TEST(ReliefBake, SamplesAreThoseOfTheMovedNodes) {
   const Sphere sphere;
   const auto sources = sphere.with(reliefImage(
@@ -244,15 +244,15 @@ TEST(ReliefBake, SamplesAreThoseOfTheMovedNodes) {
   const auto field = bakeOf(sphere.field, sphere.mesh, sources).baked(sources);
   SurfaceField bare = *field;
   bare.sample.clear();
-  const auto anew = withSamples(std::make_shared<const SurfaceField>(std::move(bare)));
-  EXPECT_TRUE(sameBlocks(field->sample, anew->sample));
+  const auto again = withSamples(std::make_shared<const SurfaceField>(std::move(bare)));
+  EXPECT_TRUE(sameBlocks(field->sample, again->sample));
   const auto base = withSamples(sphere.field);
   const std::size_t kept = sharedBlocks(*field, *base);
   EXPECT_GT(kept, 0U);
   EXPECT_LT(kept, base->blockCount());
 }
 
-TEST(ReliefBake, OfDabsIsBitForBitThatOfTheWholeImage) {
+TEST(ReliefBake, DabsAreBitwiseEqualToTheWholeImage) {
   const Sphere sphere(8, 50);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -270,7 +270,7 @@ TEST(ReliefBake, OfDabsIsBitForBitThatOfTheWholeImage) {
     const auto old_sources = sources;
     sources[0].image = image;
     const auto old_field = field;
-    field = bake.rebaked(*old_field, old_sources, sources);
+    field = bake.updateBaked(*old_field, old_sources, sources);
     ASSERT_TRUE(sameBits(*field, *bake.baked(sources))) << dab;
     const std::size_t shared = sharedBlocks(*field, *old_field);
     EXPECT_TRUE(dab == 0 || shared > field->blockCount() / 2);
@@ -304,12 +304,12 @@ TEST(ReliefBake, HoldsExtremesOfAnImage) {
   }
 }
 
-TEST(ReliefBake, RefusesWhatTheBandDoesNotHoldAndNamesIt) {
+TEST(ReliefBake, RejectsHeightsBeyondTheBandAndNamesThem) {
   const Sphere sphere;
   const double voxel = sphere.field->grid.voxel;
   const auto image = reliefImage(128, constant);
   const ReliefBake bake = bakeOf(sphere.field, sphere.mesh, sphere.with(image));
-  const double most = (8 - kBandBeyondRelief) * voxel;
+  const double most = (8 - kBandMargin) * voxel;
   EXPECT_NEAR(bake.baked(sphere.with(image, 0.999 * most))->band, 3.005, 1e-9);
   for (const double height : {1.001 * most, -1.001 * most, 80 * voxel}) try {
       bake.baked(sphere.with(image, height));
@@ -324,7 +324,7 @@ TEST(ReliefBake, RefusesWhatTheBandDoesNotHoldAndNamesIt) {
   }
 }
 
-TEST(ReliefBake, RefusesWhatItWasNotMadeFor) {
+TEST(ReliefBake, RejectsOtherFieldsAndImages) {
   const Sphere sphere;
   const auto image = reliefImage(64, constant);
   const auto sources = sphere.with(image);

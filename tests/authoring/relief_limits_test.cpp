@@ -13,7 +13,7 @@ namespace {
 using namespace test;
 
 // F7: a sine of amplitude A is as high as 2 b lambda^2 / (4 pi^2 P T) allows.
-TEST(ReliefLimit, OfASineIsTheClosedForm) {
+TEST(ReliefLimit, MatchesTheClosedFormForASine) {
   const Sheet sheet;
   DeviceModel device;
   device.damping = 0.5;
@@ -40,7 +40,7 @@ TEST(ReliefLimit, OfASineIsTheClosedForm) {
     }
 }
 
-// Along the surface: however the sheet lies in the image.
+// Curvature is measured along the surface, for any orientation of the sheet in the image.
 TEST(ReliefLimit, DoesNotDependOnTheLayout) {
   const double wavelength = 0.03, k = 2 * M_PI / wavelength;
   for (const Eigen::Matrix2d& m : {matrix(1, 0, 0, 1), matrix(0, -0.5, 0.9, 0),
@@ -57,30 +57,30 @@ TEST(ReliefLimit, DoesNotDependOnTheLayout) {
   }
 }
 
-// A texel changed on the corner of a tile is seen from all four.
-TEST(BendMap, FromAKnownVersionIsThatOfTheWholeImage) {
+// A texel changed on the corner of a tile affects all four tiles.
+TEST(CurvatureMap, IncrementalUpdateEqualsTheWholeImage) {
   const Sheet sheet(matrix(0.6, 0.3, 0, 0.6));
-  const BendMap map(std::make_shared<const TriangleMesh>(sheet.mesh), sheet.layout.uvs, kSize,
-                    kSize);
+  const CurvatureMap map(std::make_shared<const TriangleMesh>(sheet.mesh), sheet.layout.uvs, kSize,
+                         kSize);
   std::mt19937 random(3);
   std::uniform_int_distribution<int> tile(2, kSize / kTileSide - 3), within(0, kTileSide - 1);
   TiledImage image = *reliefImage(kSize, [](double u, double v) { return std::sin(20 * u * v); });
-  std::vector<float> known = map.byTile(image);
+  std::vector<float> known = map.perTile(image);
   int seen = 0;
   for (int i = 0; i < 20; ++i) {
     const TiledImage before = image.published();
     const int at = i < 4 ? 0 : within(random);
     const int x = kTileSide * tile(random) + at, y = kTileSide * tile(random) + at;
     image.writable(image.tileOf(x, y))[image.offsetOf(x, y)] += 1;
-    const std::vector<float> whole = map.byTile(image);
+    const std::vector<float> whole = map.perTile(image);
     seen += whole != known;
-    known = map.byTile(image, &before, &known);
+    known = map.perTile(image, &before, &known);
     EXPECT_EQ(known, whole);
   }
-  EXPECT_GT(seen, 10); // not where the sheet is not shown
+  EXPECT_GT(seen, 10); // tiles without the sheet do not count
 }
 
-TEST(ReliefLimit, OfFlatReliefIsNone) {
+TEST(ReliefLimit, IsAbsentForFlatRelief) {
   const Sheet sheet;
   const TiledImage empty(kSize, kSize, 1);
   const auto constant = reliefImage(kSize, [](double, double) { return 0.7; });
@@ -93,8 +93,8 @@ TEST(ReliefLimit, OfFlatReliefIsNone) {
   EXPECT_FALSE(flat.admissible);
 }
 
-// The step from a chart to what lies beside it in the image is not on the surface.
-TEST(ReliefLimit, DoesNotLookAcrossTheEdgeOfAChart) {
+// The step at the edge of a chart in the image is not on the surface.
+TEST(ReliefLimit, IgnoresTexelsBeyondTheChartEdge) {
   const Sheet sheet(matrix(0.5, 0, 0, 0.5));
   const TexelMap texels = texelMap(*sheet.layout.uvs, kSize, kSize);
   const auto image = reliefImage(kSize, [&](double u, double v) {

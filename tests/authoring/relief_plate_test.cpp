@@ -1,4 +1,4 @@
-// Relief on a one-sided open part, which is the front of a plate.
+// Relief on a one-sided open part, which is the front of a thickened sheet.
 #include <cmath>
 #include <string>
 
@@ -27,12 +27,12 @@ struct SlabSheet {
   std::shared_ptr<const SurfaceField> baked(double height) const {
     const auto disc = reliefImage(
         128, [](double u, double v) { return std::hypot(u - 0.5, v - 0.5) < 0.3 ? 1.0 : 0.0; });
-    const std::vector<ReliefSource> sources{sourceOf(mesh, uvs, disc, height)};
+    const std::vector<ReliefInput> sources{sourceOf(mesh, uvs, disc, height)};
     return bakeOf(field, mesh, sources).baked(sources);
   }
 };
 
-TEST(PlateRelief, MovesTheFrontOfAPlateAndNotItsBack) {
+TEST(PlateRelief, MovesTheFrontOfASheetAndNotItsBack) {
   for (const double band : {8.0, 14.0})
     for (const double height : {2e-3, -1e-3, -2e-3, band > 8 ? -5e-3 : 1e-3}) {
       const auto field = SlabSheet(band).baked(height);
@@ -42,7 +42,7 @@ TEST(PlateRelief, MovesTheFrontOfAPlateAndNotItsBack) {
         EXPECT_NEAR(from + surfaceAt(*field, Vec3(x, 0, from), Vec3::UnitZ()), -band * 1e-3, 1e-5)
             << height;
       }
-      // Behind the plate a coarse node is as far from it as it was.
+      // The distance of coarse nodes behind the sheet is unchanged.
       const auto base = SlabSheet(band).field;
       std::size_t i = 0;
       for (int z = 0; z <= base->blocks[2]; ++z)
@@ -55,7 +55,7 @@ TEST(PlateRelief, MovesTheFrontOfAPlateAndNotItsBack) {
     }
 }
 
-TEST(PlateRelief, RefusesToEngraveAPlateThroughAndNamesTheBand) {
+TEST(PlateRelief, RejectsEngravingThroughASheetAndNamesTheBand) {
   for (const double height : {-2.1e-3, -4.5e-3, -5e-3}) try {
       (void)SlabSheet(8).baked(height);
       FAIL() << height;

@@ -1,4 +1,4 @@
-// Objects with an image round them, for tests of relief.
+// Objects wrapped in an image, for tests of relief.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "authoring/relief/relief_bake.h"
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "field/sampling/field_sampler.h"
 #include "geometry/mesh/shapes.h"
 #include "support/relief_image.h"
@@ -25,8 +25,8 @@ inline std::shared_ptr<const CornerUvs> uvsBy(const TriangleMesh& mesh,
   return uvs;
 }
 
-inline ReliefSource sourceOf(const TriangleMesh& mesh, std::shared_ptr<const CornerUvs> uvs,
-                             std::shared_ptr<const TiledImage> image, double height) {
+inline ReliefInput sourceOf(const TriangleMesh& mesh, std::shared_ptr<const CornerUvs> uvs,
+                            std::shared_ptr<const TiledImage> image, double height) {
   return {0, static_cast<std::int32_t>(mesh.triangles.size()), std::move(uvs), std::move(image),
           height};
 }
@@ -38,12 +38,12 @@ inline std::shared_ptr<const SurfaceField> fieldOf(const TriangleMesh& mesh,
 }
 
 inline ReliefBake bakeOf(const std::shared_ptr<const SurfaceField>& field, const TriangleMesh& mesh,
-                         const std::vector<ReliefSource>& sources) {
+                         const std::vector<ReliefInput>& sources) {
   Progress progress;
   return ReliefBake(field, mesh, sources, progress);
 }
 
-// Where phi changes sign from `outside` inwards [m along the way].
+// Distance to the sign change of phi from `outside` inwards [m].
 inline double surfaceAt(const SurfaceField& field, const Vec3& outside, const Vec3& inwards) {
   const FieldSampler sampler(field, Sampler::kim);
   double t = 0;

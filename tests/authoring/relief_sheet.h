@@ -1,4 +1,4 @@
-// A sheet that fills the image, for measures of relief.
+// A sheet that fills the image, for tests of relief.
 #pragma once
 
 #include "authoring/relief_shapes.h"
@@ -9,7 +9,7 @@ inline constexpr double kWidth = 0.1;
 inline constexpr int kSize = 256;
 inline constexpr double kTexel = kWidth / kSize;
 
-// Perhaps turned, sheared or stretched in it.
+// The sheet may be rotated, sheared or stretched in the image.
 struct Sheet {
   TriangleMesh mesh = sheet(kWidth, kWidth, 8);
   TextureLayout layout;

@@ -27,7 +27,7 @@ TiledImage smoothedOn(const Sheet& sheet, const TiledImage& image, double deviat
   return smootherOn(sheet, image.width(), deviation).smoothed(image);
 }
 
-constexpr double kTransferError = 0.013; // of a wave's height
+constexpr double kTransferError = 0.013; // relative to the height of a wave
 
 double amplitudeAlong(const TiledImage& image, int from, int to) {
   float low = 1e9F, high = -1e9F;
@@ -39,8 +39,8 @@ double amplitudeAlong(const TiledImage& image, int from, int to) {
   return 0.5 * static_cast<double>(high - low);
 }
 
-// exp(-2 pi^2 sigma^2 / lambda^2), in the middle where the sheet's edge is not seen.
-TEST(SmoothedRelief, DampsAWaveAsAGaussianDoes) {
+// exp(-2 pi^2 sigma^2 / lambda^2), in the middle, far from the sheet's edge.
+TEST(SmoothedRelief, DampsAWaveLikeAGaussian) {
   const double wavelength = 24 * kTexel, k = 2 * M_PI / wavelength;
   for (const Eigen::Matrix2d& m :
        {matrix(1, 0, 0, 1), matrix(0, -1, 0.8, 0), matrix(0.9, 0.3, 0, 0.9)}) {
@@ -63,8 +63,8 @@ TEST(SmoothedRelief, DampsAWaveAsAGaussianDoes) {
   }
 }
 
-// exp(-k^2 s^2 / 2) at each texel, also of waves as short as what wide smoothing works on.
-TEST(SmoothedRelief, DampsEachWaveAsAGaussianDoesHoweverWide) {
+// exp(-k^2 s^2 / 2) at each texel, also for waves as short as the internal step of wide smoothing.
+TEST(SmoothedRelief, DampsEachWaveLikeAGaussianOfAnyWidth) {
   for (const Eigen::Matrix2d& m : {matrix(1, 0, 0, 1), matrix(0.9, 0.3, 0, 0.9)}) {
     const Sheet sheet(m);
     const Eigen::Matrix2d side_from_uv = m.inverse() * kWidth;
@@ -72,7 +72,7 @@ TEST(SmoothedRelief, DampsEachWaveAsAGaussianDoesHoweverWide) {
       const double deviation = texels * kTexel;
       const ReliefSmoother smooth = smootherOn(sheet, kSize, deviation);
       for (const double waves : {0.45, 0.6, 1.0, 3.0, 4.5, 8.0}) { // long, in deviations
-        if (waves * texels < 2.5) continue;                        // that no texel shows
+        if (waves * texels < 2.5) continue;                        // not resolved by the texels
         const double k = 2 * M_PI / (waves * deviation);
         const double kept = std::exp(-0.5 * k * k * deviation * deviation);
         for (const Vec2& along : {Vec2(1, 0), Vec2(0, 1), Vec2(0.6, -0.8)}) {
@@ -95,7 +95,7 @@ TEST(SmoothedRelief, DampsEachWaveAsAGaussianDoesHoweverWide) {
 }
 
 // Texels that are twice as long in one half of the image as in the other.
-TEST(SmoothedRelief, DampsWavesWhereTexelsDifferAsWell) {
+TEST(SmoothedRelief, DampsWavesAlsoIfTexelsDifferInSize) {
   const Sheet sheet;
   CornerUvs uvs = *sheet.layout.uvs; // u = 1/2 stays, the left half takes a third of the image
   constexpr double kMiddle = 1.0 / 3;
@@ -124,7 +124,7 @@ TEST(SmoothedRelief, DampsWavesWhereTexelsDifferAsWell) {
   }
 }
 
-// Two charts side by side in the image that show places far apart.
+// Two charts side by side in the image that show distant parts of the surface.
 TEST(SmoothedRelief, PassesNothingFromChartToChart) {
   Sheet sheet;
   CornerUvs uvs = *sheet.layout.uvs;
@@ -142,8 +142,8 @@ TEST(SmoothedRelief, PassesNothingFromChartToChart) {
   }
 }
 
-// Where faces are sheared one way and the other: no more than there was, nothing that rings.
-TEST(SmoothedRelief, StaysWithinWhatIsThereOnSkewFaces) {
+// On faces sheared in opposite ways the heights stay in their range, without ringing.
+TEST(SmoothedRelief, StaysWithinTheRangeOfHeightsOnSkewFaces) {
   const Sheet sheet;
   CornerUvs uvs = *sheet.layout.uvs;
   for (auto& corners : uvs)
@@ -165,7 +165,7 @@ TEST(SmoothedRelief, StaysWithinWhatIsThereOnSkewFaces) {
   }
 }
 
-TEST(SmoothedRelief, IsTheGaussianOfALine) {
+TEST(SmoothedRelief, MatchesTheGaussianOfALine) {
   const Sheet sheet;
   const auto line = reliefImage(
       kSize, [](double u, double) { return static_cast<int>(u * kSize) == 128 ? 1.0 : 0.0; });
@@ -178,7 +178,7 @@ TEST(SmoothedRelief, IsTheGaussianOfALine) {
   }
 }
 
-TEST(SmoothedRelief, KeepsConstantsAndWhatIsNotShown) {
+TEST(SmoothedRelief, KeepsConstantsAndUnusedTexels) {
   const TriangleMesh ball = icosphere(0.05, 12);
   const TextureLayout layout = textureLayout(ball, kSize);
   const TexelMap texels = texelMap(*layout.uvs, kSize, kSize);
@@ -193,7 +193,7 @@ TEST(SmoothedRelief, KeepsConstantsAndWhatIsNotShown) {
   EXPECT_TRUE(same(smoother(ball, layout.uvs, kSize, 0).smoothed(*image), *image));
 }
 
-// The heat that leaves a dab stays on its chart: the sum over the surface is kept.
+// Diffusion stays on the dab's chart: the sum over the surface is kept.
 TEST(SmoothedRelief, KeepsTheVolumeOfADab) {
   const Sheet sheet(matrix(0.8, 0.2, -0.1, 0.6));
   const auto dab = reliefImage(
@@ -208,8 +208,8 @@ TEST(SmoothedRelief, KeepsTheVolumeOfADab) {
   EXPECT_NEAR(sum[1] / sum[0], 1, 1e-3);
 }
 
-// So that an edit stays local, whatever is smoothed.
-TEST(SmoothedRelief, IsBitForBitTheSameFarFromAnEdit) {
+// An edit must stay local for any image.
+TEST(SmoothedRelief, IsBitwiseUnchangedFarFromAnEdit) {
   const Sheet sheet;
   const auto near = [](double u, double v, double x, double y) {
     return std::hypot(u - x, v - y) < 0.04 ? 1.0 : 0.0;
@@ -225,7 +225,7 @@ TEST(SmoothedRelief, IsBitForBitTheSameFarFromAnEdit) {
 }
 
 // A stroke over charts, gutters and the image's border, raised, engraved and erased.
-TEST(SmoothedRelief, MadeAnewRoundAnEditIsTheWholeImageBitForBit) {
+TEST(SmoothedRelief, UpdateAroundAnEditIsBitwiseEqualToTheWholeImage) {
   struct Case {
     TriangleMesh mesh;
     std::shared_ptr<const CornerUvs> uvs;
@@ -246,7 +246,7 @@ TEST(SmoothedRelief, MadeAnewRoundAnEditIsTheWholeImageBitForBit) {
     for (int dab = 0; dab < 12; ++dab) {
       TiledImage relief = before;
       const double value = dab % 4 == 3 ? 0 : at(random) - 0.4; // the last of four erases
-      for (int spot = 0; spot <= dab % 3; ++spot) {             // as a brush across a seam does
+      for (int spot = 0; spot <= dab % 3; ++spot) {             // like a brush across a seam
         const int ci = static_cast<int>(at(random) * kSize),
                   cj = static_cast<int>(at(random) * kSize);
         for (int j = std::max(cj - 9, 0); j < std::min(cj + 10, kSize); ++j)
@@ -255,7 +255,7 @@ TEST(SmoothedRelief, MadeAnewRoundAnEditIsTheWholeImageBitForBit) {
               relief.writable(relief.tileOf(i, j))[relief.offsetOf(i, j)] =
                   static_cast<float>(value * (1 + 0.1 * at(random)));
       }
-      const TiledImage next = kept.resmoothed(result, before, relief);
+      const TiledImage next = kept.updateSmoothed(result, before, relief);
       ASSERT_TRUE(same(next, smoother(one.mesh, one.uvs, kSize, one.deviation).smoothed(relief)))
           << dab;
       for (std::size_t t = 0; t < next.tileCount(); ++t)
@@ -263,11 +263,11 @@ TEST(SmoothedRelief, MadeAnewRoundAnEditIsTheWholeImageBitForBit) {
       before = relief;
       result = next;
     }
-    EXPECT_GT(shared, 12U); // what no dab is near is not made anew
+    EXPECT_GT(shared, 12U); // tiles far from all dabs are reused
   }
 }
 
-TEST(SmoothedRelief, RefusesWhatMakesNoSense) {
+TEST(SmoothedRelief, RejectsInvalidInput) {
   const Sheet sheet;
   const TiledImage other(64, 64, 1);
   for (const double deviation : {-1e-3, static_cast<double>(NAN), static_cast<double>(INFINITY)})

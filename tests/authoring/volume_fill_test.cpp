@@ -60,7 +60,7 @@ TriangleMesh spiky(int across, double pitch, double height) {
 }
 
 // T-K15a.
-TEST(VolumeFill, IsAllFacesWithinTheBrushOnAConvexMesh) {
+TEST(VolumeFill, FindsAllFacesWithinTheBrushOnAConvexMesh) {
   const auto surface = bareSurface(icosphere(0.05, 20));
   VolumeFill fill(surface);
   std::mt19937 random(1);
@@ -74,8 +74,8 @@ TEST(VolumeFill, IsAllFacesWithinTheBrushOnAConvexMesh) {
   }
 }
 
-// A triangle that reaches into the brush with none of its corners.
-TEST(VolumeFill, FindsLargeTrianglesByTheirInside) {
+// A triangle that enters the brush with none of its corners.
+TEST(VolumeFill, FindsLargeTrianglesByTheirInterior) {
   const auto surface = bareSurface(box(Vec3(0.1, 0.1, 0.1)));
   VolumeFill fill(surface);
   EXPECT_EQ(filled(fill, Vec3(0.01, 0.02, 0.05), 0.001).size(), 1u);
@@ -104,7 +104,7 @@ TEST(VolumeFill, ReachesOtherObjectsThatTheFloodCannot) {
 }
 
 // T-K15c.
-TEST(VolumeFill, OfAMillionFacesEndsInLinearTime) {
+TEST(VolumeFill, TakesLinearTimeForAMillionFaces) {
   const auto seconds = [](int frequency) {
     Scene scene = sceneOf(icosphere(0.05, frequency), 24);
     Progress progress;
@@ -128,8 +128,8 @@ TEST(VolumeFill, OfAMillionFacesEndsInLinearTime) {
   }
 }
 
-// T-K15d: parts that no node names and no neighbour leads to may be missed; nothing else is taken.
-TEST(VolumeFill, OnSpikesTakesOnlyWhatIsWithinReach) {
+// T-K15d: parts without a node or a neighbour in the fill may be missed; no other face is taken.
+TEST(VolumeFill, TakesOnlyFacesWithinReachOnSpikes) {
   const double pitch = 0.001;
   const auto surface = bareSurface(spiky(50, pitch, 0.004), 66); // h = 1 mm: features of h / 2
   VolumeFill fill(surface);
@@ -158,7 +158,7 @@ TEST(VolumeFill, CrossesEdgesWhereThreeSheetsMeet) {
   mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
   auto deaf = std::make_shared<PaintSurface>(*bareSurface(mesh));
   auto field = std::make_shared<SurfaceField>(*deaf->field);
-  field->face.clear(); // neighbours alone must lead there
+  field->face.clear(); // only neighbours lead there
   deaf->field = field;
   VolumeFill fill(deaf);
   EXPECT_EQ(fill.fill(Vec3(0.01, 0.002, 0), 0.004, 0, Vec3::Zero()).size(), 3u);
@@ -200,15 +200,15 @@ TEST(VolumeFill, FootIsTheClosestPointNearTheSurface) {
   EXPECT_FALSE(fill.foot(Vec3::Constant(std::nan(""))));
 }
 
-TEST(VolumeFill, ManyFillsLeaveNoTraceOfOneAnother) {
+TEST(VolumeFill, FillsDoNotAffectEachOther) {
   const auto surface = bareSurface(icosphere(0.05, 10));
   VolumeFill fill(surface), fresh(surface);
   for (int k = 0; k < 100; ++k) (void)filled(fill, Vec3(0, 0.05, 0), 0.001 * k);
   EXPECT_EQ(filled(fill, Vec3(0, 0, 0.05), 0.02), filled(fresh, Vec3(0, 0, 0.05), 0.02));
 }
 
-// K15: of all faces that the way goes through, the one nearest to its end.
-TEST(VolumeFill, TheSegmentFromTheTipPicksTheFaceThatItGoesThrough) {
+// K15: of all faces that the segment crosses, the one nearest to its end.
+TEST(VolumeFill, SegmentFromTheTipPicksTheFaceItCrosses) {
   const auto surface = bareSurface(icosphere(0.05, 12));
   const TriangleMesh& mesh = *surface->mesh;
   const VolumeFill fill(surface);
@@ -219,9 +219,9 @@ TEST(VolumeFill, TheSegmentFromTheTipPicksTheFaceThatItGoesThrough) {
   int beyond = 0, unknown = 0;
   for (int n = 0; n < 2000; ++n) {
     const Vec3 out = Vec3(normal(random), normal(random), normal(random)).normalized();
-    const Vec3 askew = 1e-3 * Vec3(normal(random), normal(random), normal(random)).cross(out);
-    const Vec3 tip = 0.047 * out + askew;
-    // The VCP of a field lies a little beside the faces, on either side.
+    const Vec3 tilted = 1e-3 * Vec3(normal(random), normal(random), normal(random)).cross(out);
+    const Vec3 tip = 0.047 * out + tilted;
+    // The VCP of a field lies slightly off the faces, on either side.
     const Vec3 vcp = 0.0499 * out + 2e-4 * normal(random) * out;
     int hit = -1;
     double at = 0;
@@ -238,7 +238,7 @@ TEST(VolumeFill, TheSegmentFromTheTipPicksTheFaceThatItGoesThrough) {
       if (inside && t >= 0 && (p - vcp).norm() < 3e-3) hit = static_cast<int>(f), at = t;
     }
     ASSERT_GE(hit, 0) << n;
-    const auto found = fill.pierced(tip, vcp);
+    const auto found = fill.segmentHit(tip, vcp);
     if (!found) { // the cell's nodes are all nearer to other faces
       const Vec3 cell = grid.toGrid(vcp).array().floor();
       for (int k = 0; k < 8; ++k)
@@ -255,20 +255,21 @@ TEST(VolumeFill, TheSegmentFromTheTipPicksTheFaceThatItGoesThrough) {
     beyond += at > 1;
   }
   EXPECT_LT(unknown, 20);
-  EXPECT_GT(beyond, 200); // the way was taken farther
+  EXPECT_GT(beyond, 200); // the segment was extended
   EXPECT_LT(beyond, 1800);
 }
 
-TEST(VolumeFill, ASegmentThatGoesThroughNothingPicksNothing) {
+TEST(VolumeFill, SegmentWithoutIntersectionPicksNothing) {
   const auto surface = bareSurface(icosphere(0.05, 12));
   const VolumeFill fill(surface);
   const Vec3 top(0, 0, 0.05);
   const double h = surface->field->grid.voxel;
-  EXPECT_FALSE(fill.pierced(top, top));                                    // no way at all
-  EXPECT_FALSE(fill.pierced(0.8 * top, top - Vec3(0, 0, 2.1 * h)));        // ends 2.1 h short of it
-  EXPECT_TRUE(fill.pierced(top - Vec3(0, 0, 3 * h), top - Vec3(0, 0, h))); // and here it does not
-  EXPECT_FALSE(fill.pierced(Vec3(1, 0, 0), Vec3(1, 0, 0.1)));              // outside the field
-  EXPECT_FALSE(fill.pierced(top + Vec3(0, 0, h), top + Vec3(h, 0, h)));    // along it
+  EXPECT_FALSE(fill.segmentHit(top, top));                             // a segment of zero length
+  EXPECT_FALSE(fill.segmentHit(0.8 * top, top - Vec3(0, 0, 2.1 * h))); // ends 2.1 h short of it
+  EXPECT_TRUE(
+      fill.segmentHit(top - Vec3(0, 0, 3 * h), top - Vec3(0, 0, h)));      // goes through the face
+  EXPECT_FALSE(fill.segmentHit(Vec3(1, 0, 0), Vec3(1, 0, 0.1)));           // outside the field
+  EXPECT_FALSE(fill.segmentHit(top + Vec3(0, 0, h), top + Vec3(h, 0, h))); // along it
 }
 
 } // namespace

@@ -1,6 +1,6 @@
-// Relief baked into the field while a person paints (K20, K21): the whole image within a picture's
-// time, one dab within a few milliseconds whatever the mesh. By one thread alone; that the whole
-// image is shared among threads is looked at by itself. Beside a limit: the ratio measured.
+// Relief baked into the field while the user paints (K20, K21): the whole image within a picture's
+// time, one dab within a few milliseconds on any mesh. One thread is measured; sharing the whole
+// image among threads is tested separately. The measured ratio stands beside each limit.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -24,7 +24,7 @@ constexpr int kImage = 512;
 struct Painted {
   TriangleMesh mesh;
   std::shared_ptr<const SurfaceField> field;
-  std::vector<ReliefSource> sources;
+  std::vector<ReliefInput> sources;
 };
 
 Painted painted(TriangleMesh mesh, const std::shared_ptr<const TiledImage>& image) {
@@ -43,7 +43,7 @@ std::shared_ptr<const TiledImage> waves() {
   });
 }
 
-// Share of the work that the thread which asked for it did itself.
+// Share of the work done by the calling thread itself.
 double shareOfCaller(const std::function<void()>& work) {
   double least = 1;
   for (int i = 0; i < 12; ++i) {
@@ -59,13 +59,13 @@ void wholeImage(const char* name, TriangleMesh mesh) {
   const Painted shape = painted(std::move(mesh), waves());
   Progress progress;
   const ReliefBake bake(shape.field, shape.mesh, shape.sources, progress);
-  std::shared_ptr<const SurfaceField> result; // the last one lives on, as that of the servo
+  std::shared_ptr<const SurfaceField> result; // the last field stays alive, like that of the servo
   const test::Work work = [&] { result = bake.baked(shape.sources); };
   test::Reference reference;
   std::vector<double> seconds;
   {
     const test::OneThread alone;
-    seconds = test::leastSeconds({work, [&] { reference.bake(); }});
+    seconds = test::minSeconds({work, [&] { reference.bake(); }});
   }
   const double share = shareOfCaller(work);
   std::printf("%s: %zu blocks, %zu faces; %.1f MB beside %.1f MB of field; the caller does %.0f %% "
@@ -113,13 +113,14 @@ DabTime dabTime(const char* name, TriangleMesh mesh) {
       dabbed->writable(dabbed->tileOf(i, j))[dabbed->offsetOf(i, j)] += 0.1F;
       ++count;
     }
-  std::vector<ReliefSource> after = shape.sources;
+  std::vector<ReliefInput> after = shape.sources;
   after[0].image = dabbed;
   const auto before = bake.baked(shape.sources);
   std::shared_ptr<const SurfaceField> result;
   test::Reference reference;
-  const std::vector<double> seconds = test::leastSeconds(
-      {[&] { result = bake.rebaked(*before, shape.sources, after); }, [&] { reference.bake(); }});
+  const std::vector<double> seconds =
+      test::minSeconds({[&] { result = bake.updateBaked(*before, shape.sources, after); },
+                        [&] { reference.bake(); }});
   std::size_t moved = 0, sampled = 0;
   for (std::size_t slot = 0; slot < result->blockCount(); ++slot) {
     moved += result->distance[slot] != before->distance[slot];

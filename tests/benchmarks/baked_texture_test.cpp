@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "geometry/mesh/shapes.h"
-#include "session/build/session.h"
 #include "session/edit/editor.h"
+#include "session/open/session.h"
 #include "support/least_time.h"
 #include "support/sanitized.h"
 
@@ -19,7 +19,7 @@ constexpr int kTips = 2000;
 
 struct Felt {
   std::shared_ptr<const CompiledScene> scene;
-  std::vector<Vec3> tips; // as deep below its own surface as the other's
+  std::vector<Vec3> tips; // at equal depth below each surface
   std::size_t samples = 0, touching = 0;
 
   void pass() {
@@ -44,7 +44,7 @@ std::vector<Vec3> tipsOver(double radius) {
   return tips;
 }
 
-TEST(BakedTexture, ATickCostsWhatItCostsWithoutIt) {
+TEST(BakedTexture, CostsNoTickTime) {
   Progress progress;
   Scene scene = sceneOf(icosphere(kBaked, 40), "ball");
   setValues(scene, {{"relief.mode", "baked"}, {"relief.force", "literal"}, {"band", "12"}});
@@ -58,20 +58,20 @@ TEST(BakedTexture, ATickCostsWhatItCostsWithoutIt) {
   all.samples = {{0, Vec3(0, 0, kBaked), 0}};
   (void)editor.apply(all, progress);
   Felt with{editor.compiled(), tipsOver(kBaked + kHeight)};
-  ASSERT_NE(with.scene->paint.field, with.scene->built.field); // it is in the field
+  ASSERT_NE(with.scene->paint.field, with.scene->built.field); // the relief is in the field
   ASSERT_EQ(with.scene->built.field->grid.voxel, without.scene->built.field->grid.voxel);
   EXPECT_EQ(with.scene->snapshot->stages.size(), without.scene->snapshot->stages.size());
   const std::vector<double> seconds =
-      test::leastSeconds({[&] { without.pass(); }, [&] { with.pass(); }});
+      test::minSeconds({[&] { without.pass(); }, [&] { with.pass(); }});
   std::printf("%zu and %zu look-ups\n", without.samples, with.samples);
   EXPECT_EQ(without.touching, static_cast<std::size_t>(kTips));
   EXPECT_EQ(with.touching, static_cast<std::size_t>(kTips));
   // The curvature is a little less; 2051 and 2048 measured.
   EXPECT_NEAR(static_cast<double>(with.samples), static_cast<double>(without.samples),
               0.01 * static_cast<double>(without.samples));
-  // The look-ups tell whether a tick does more; the time, whether each costs more: 1.06 to 1.08
-  // measured, as every look asks for the nodes' spread, and where its blocks lie in memory is worth
-  // a few hundredths.
+  // The number of field evaluations shows whether a tick does more, the time whether each costs
+  // more. Measured are 1.06 to 1.08, because each evaluation reads the nodes' spread; the memory
+  // layout of the blocks adds a few hundredths.
   if (!test::kSanitized) {
     EXPECT_TRUE(test::within("a pass with texture, against without", seconds[1], seconds[0], 1.15));
   }

@@ -1,4 +1,4 @@
-// The fixed contact test against what must hold: accuracy from one run, times against a reference.
+// Limits of the fixed contact test: accuracy from one run, times against a reference.
 #include "app/studies/haptics/contact_test_path.h"
 #include "benchmarks/tick_time.h"
 
@@ -59,7 +59,7 @@ TEST_P(ContactBenchmark, SphereOf100kTriangles) {
   const ContactTestErrors high = errorsOf(k100k, {.tip_radius = GetParam()});
   EXPECT_LE(high.direction_mean, 0.017);
   EXPECT_LE(high.direction_max, 0.08);
-  EXPECT_LE(high.magnitude_mean, 0.17); // the facets' own floor
+  EXPECT_LE(high.magnitude_mean, 0.17); // the error of the facets
   EXPECT_LE(high.magnitude_max, 0.58);
 }
 
@@ -94,7 +94,7 @@ TEST(ContactCracks, LoseNoTick) {
     const ContactTestErrors whole = errorsOf(surface, {});
     for (const double crack : {1e-4, 1e-3, 1e-2}) {
       const ContactTestErrors errors = errorsOf(surface, {}, crack);
-      // A hundredth is a gap that the distance itself feels: a tenth more is allowed there.
+      // At a hundredth of R the gap affects the distance itself: a tenth more is allowed there.
       const double allowance = crack > 5e-3 ? 1.1 : 1.02;
       EXPECT_LE(errors.direction_mean, allowance * whole.direction_mean) << crack;
       EXPECT_LE(errors.direction_max, allowance * whole.direction_max) << crack;
@@ -114,8 +114,8 @@ TEST_P(ContactBenchmark, ForceIsTheSameAtEverySize) {
     double worst = 0;
     for (std::size_t i = 0; i < force.size(); ++i)
       worst = std::max(worst, (force[i] - reference[i]).norm() / reference[i].norm());
-    // Where one look more is a matter of the last bit, the force moves by what a look leaves
-    // undone.
+    // Where the last bit decides on one more evaluation, the force changes by the residual of an
+    // evaluation.
     EXPECT_LE(worst, 3e-4) << radius;
   }
 }
@@ -135,13 +135,13 @@ TEST(ContactScale, ForceIsTheSameAtEverySizeOfMesh) {
     for (std::size_t i = 0; i < force.size(); ++i)
       worst = std::max(worst, (force[i] - reference[i]).norm() / reference[i].norm());
     std::printf("R = %g m: %.2g\n", radius, worst);
-    // Over facets the last bit decides where a proxy's step ends, to 3e-4 voxel, which is 4e-4 of
-    // the least depth: 7.6e-5 measured.
+    // On facets the last bit decides where a proxy's step ends, to 3e-4 voxel, which is 4e-4 of the
+    // smallest depth: 7.6e-5 measured.
     EXPECT_LE(worst, 2.2e-4) << radius;
   }
 }
 
-// What a tick may take, in reference ticks: 3 times what was measured, beside it.
+// Largest time of a tick in reference ticks: 3 times the measured value, which stands beside it.
 struct TickRow {
   const char* name;
   int surface;
@@ -157,7 +157,7 @@ const TickRow kTickRows[] = {
     {"finite tip with friction", k1M, {.tip_radius = kTip, .friction = true}, 6, 7}, // 2.0, 2.0
 };
 
-PATINA_TIMED_TEST(ContactTiming, TickIsQuickWhateverTheMeshAndTheTip) {
+PATINA_TIMED_TEST(ContactTiming, TickIsFastForAnyMeshAndTip) {
   for (const TickRow& row : kTickRows) {
     const test::TickTime time =
         test::tickTime(*snapshotOf(row.surface, row.spec), makeContactTest(row.spec));

@@ -6,15 +6,15 @@
 #include <gtest/gtest.h>
 
 #include "geometry/mesh/shapes.h"
-#include "session/build/session.h"
 #include "session/edit/editor.h"
+#include "session/open/session.h"
 #include "support/least_time.h"
 #include "support/one_thread.h"
 
 namespace patina {
 namespace {
 
-constexpr double kEdited = 0.03;                  // of the sphere [m]
+constexpr double kEdited = 0.03;                  // radius of the sphere [m]
 constexpr double kEditBrush = 0.05 * 2 * kEdited; // 5 % of the object
 constexpr int kEdits = 300, kEditRounds = 4;
 
@@ -52,7 +52,7 @@ PATINA_TIMED_TEST(EditorDab, ImageFieldAndMaterialTakeLittleOnAnyMesh) {
     scene.relief.mode = ReliefMode::baked;
     Editor editor(scene, progress);
     test::Reference kernel;
-    const double reference = test::leastSeconds({[&] { kernel.bake(); }})[0];
+    const double reference = test::minSeconds({[&] { kernel.bake(); }})[0];
     std::printf("%d triangles, p99 over the dabs\n", 20 * frequency * frequency);
     // Limits on the small mesh and on the large one, and what was measured alone. Compilers beside
     // it drive the field out of the caches: 0.55 and 0.67 in the first row.

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "field/surface/models.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/mesh_unit.h"
@@ -72,7 +72,7 @@ TEST(FieldBytes, StayBelowSevenTwentyFifthsOfADenseBoxOnAnyShape) {
   for (const auto& [name, mesh] : shapes) EXPECT_LE(shareOfDenseBox(name, mesh), kMost) << name;
 }
 
-TEST(FieldBytes, StayBelowSevenTwentyFifthsOfADenseBoxOnOtherPeoplesShapes) {
+TEST(FieldBytes, StayBelowSevenTwentyFifthsOfADenseBoxOnSharedModels) {
   for (const char* name : {"meshes/goathead.obj", "meshes/boat.obj", "meshes/plane_holes.obj",
                            "contact_paths/L.obj"}) {
     const auto path = test::sharedData(name);

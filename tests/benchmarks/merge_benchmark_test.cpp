@@ -1,22 +1,22 @@
-// A scene of a hundred objects against one (K14): the tick must not know, and the build may cost
+// A scene of a hundred objects against one (K14): a tick must cost the same, and the build may take
 // a few times that of one mesh with all the triangles.
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
 #include "benchmarks/tick_time.h"
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/shapes.h"
-#include "session/build/compile_scene.h"
+#include "session/compile/compile_scene.h"
 #include "support/one_thread.h"
 
 namespace patina {
 namespace {
 
-constexpr double kTouched = 0.05; // of the sphere that the fixed test touches, at the origin
+constexpr double kTouched = 0.05; // radius [m] of the touched sphere at the origin
 constexpr int kFrequency = 7;     // 980 triangles
 
-// The touched sphere among `count` of its kind, on one voxel whatever the count.
+// The touched sphere among `count` of its kind, with one voxel for any count.
 Scene spheres(int count) {
   Scene scene = contactTestScene({});
   scene.field.voxel = 4e-3;
@@ -41,17 +41,17 @@ PATINA_TIMED_TEST(MergeTiming, TickOfAHundredObjectsIsThatOfOne) {
   EXPECT_TRUE(test::within("100 objects, p50", time.tick.p50, time.reference.p50, 4.5)); // 1.55
 }
 
-// Packed this densely each band reaches over its neighbours: each object holds its own, and the
+// Packed this densely, each band overlaps its neighbours: each object stores its own, and the
 // blocks built are some four times those of one mesh. That is the price of moving one alone.
-PATINA_TIMED_TEST(MergeTiming, AHundredObjectsBuildInAFewTimesTheTimeOfOneMesh) {
+PATINA_TIMED_TEST(MergeTiming, HundredObjectsBuildInAFewTimesTheTimeOfOneMesh) {
   const test::OneThread alone;
   const Scene scene = spheres(100);
   const TriangleMesh joint = worldMesh(scene);
   Progress progress;
-  const std::vector<double> seconds = test::leastSeconds(
-      {[&] { (void)withSamples(buildField(joint, scene.field, progress).field); },
-       [&] { (void)compile(scene, progress); }},
-      1);
+  const std::vector<double> seconds =
+      test::minSeconds({[&] { (void)withSamples(buildField(joint, scene.field, progress).field); },
+                        [&] { (void)compile(scene, progress); }},
+                       1);
   EXPECT_TRUE(test::within("100 objects against one mesh", seconds[1], seconds[0], 5)); // 2.7
 }
 
@@ -73,10 +73,10 @@ PATINA_TIMED_TEST(MergeTiming, MovingOneObjectCostsThatObjectAndTheUnion) {
     scene.objects[3].world_from_object.translation().x() = to -= 0.001;
     compiled = recompile(*compiled, scene, progress);
   };
-  const std::vector<double> seconds = test::leastSeconds(
+  const std::vector<double> seconds = test::minSeconds(
       {[&] { (void)compile(scene, progress); }, [&] { move(false); }, [&] { move(true); }}, 1);
-  EXPECT_TRUE(test::within("one of 4 moved, against all", seconds[1], seconds[0], 0.7)); // 0.28
-  EXPECT_TRUE(test::within("  with depths measured anew", seconds[2], seconds[0], 1.5)); // 0.72
+  EXPECT_TRUE(test::within("one of 4 moved, against all", seconds[1], seconds[0], 0.7));  // 0.28
+  EXPECT_TRUE(test::within("  with depths measured again", seconds[2], seconds[0], 1.5)); // 0.72
 }
 
 } // namespace

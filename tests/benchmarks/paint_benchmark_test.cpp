@@ -1,5 +1,5 @@
-// One dab of the brush, image or material, on a small mesh and on a large one (K15, K18, K22): what
-// it costs is what the brush reaches, not the mesh.
+// One dab of the brush, image or material, on a small mesh and on a large one (K15, K18, K22): its
+// cost depends on the area of the brush, not on the mesh.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 #include "authoring/brush/painter.h"
 #include "geometry/mesh/shapes.h"
-#include "session/build/compile_scene.h"
+#include "session/compile/compile_scene.h"
 #include "support/least_time.h"
 #include "support/one_thread.h"
 
 namespace patina {
 namespace {
 
-constexpr double kRadius = 0.05;              // of the sphere
+constexpr double kRadius = 0.05;              // radius of the sphere [m]
 constexpr double kBrush = 0.05 * 2 * kRadius; // 5 % of the object
 constexpr int kDabs = 400, kRounds = 6;
 
@@ -45,8 +45,8 @@ Prepared prepared(int frequency) {
   return result;
 }
 
-// Along a spiral over the sphere, as fast as the brush is wide in ten dabs, with paint handed out
-// after each, as the editor does.
+// The stroke is a spiral over the sphere, one brush width in ten dabs, with paint handed out after
+// each dab, as in the editor.
 std::vector<double> secondsOfDabs(const Prepared& on, const Brush& brush, PaintReport& sum) {
   Painter painter(on.surface, on.scene);
   painter.begin(brush);
@@ -69,17 +69,17 @@ struct Row {
   const char* name;
   Tool tool;
   StrokeMode mode;
-  // Limits on p99 in reference bakes, on the small mesh and on the large one: 2 to 3 times what
-  // they take.
+  // Limits on p99 in reference bakes, on the small mesh and on the large one: 2 to 3 times the
+  // measured values.
   double value, small, large;
 };
 
-PATINA_TIMED_TEST(PaintTiming, ADabCostsWhatTheBrushReachesOnAnyMesh) {
+PATINA_TIMED_TEST(PaintTiming, DabCostDependsOnlyOnTheBrushOnAnyMesh) {
   const test::OneThread alone;
   test::Reference kernel;
   for (const int frequency : {7, 224}) { // 980 and 1,003,520 triangles
     const Prepared on = prepared(frequency);
-    const double reference = test::leastSeconds({[&] { kernel.bake(); }})[0];
+    const double reference = test::minSeconds({[&] { kernel.bake(); }})[0];
     for (const Row& row : {Row{"color", Tool::color, StrokeMode::max, 0, 0.055, 0.2},
                            Row{"relief", Tool::relief, StrokeMode::build_up, 1e-3, 0.045, 0.2},
                            Row{"relief smooth", Tool::relief, StrokeMode::smooth, 1e-3, 0.35, 0.35},

@@ -1,8 +1,8 @@
-// What a tick takes along the fixed contact test.
+// Time of a tick along the fixed contact test.
 #pragma once
 
 #include "app/studies/haptics/contact_test_path.h"
-#include "haptics/servo/snapshot.h"
+#include "haptics/law/snapshot.h"
 #include "support/least_time.h"
 
 namespace patina::test {
@@ -28,8 +28,8 @@ inline TickTime tickTime(const HapticSnapshot& snapshot, const ContactTest& test
   return {ticks.seconds(), references.seconds()};
 }
 
-// The time [s] of the path's beginning, one entry a snapshot; for snapshots that are compared with
-// one another, more exactly than single ticks can be timed.
+// Time [s] of the beginning of the path, one entry per snapshot, for comparing snapshots more
+// precisely than by single ticks.
 inline std::vector<double>
 pathSeconds(const std::vector<std::shared_ptr<const HapticSnapshot>>& snapshots,
             const ContactTest& test) {
@@ -41,7 +41,7 @@ pathSeconds(const std::vector<std::shared_ptr<const HapticSnapshot>>& snapshots,
       for (std::size_t i = 0; i < kTicks; ++i)
         tick(*snapshot, memory, test.tips[i], kContactTestPeriod);
     });
-  return leastSeconds(works);
+  return minSeconds(works);
 }
 
 } // namespace patina::test

@@ -1,5 +1,5 @@
-// What a contact method must do on any shape (T-P1 .. T-P6): never without force, never pulling,
-// no step of its own, near to the proxy on the exact distance, no energy out of closed loops.
+// Requirements on a contact method on any shape (T-P1 .. T-P6): never without force, never pulling,
+// no force step of its own, close to the proxy on the exact distance, no energy from closed loops.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/studies/contact/course.h"
+#include "app/studies/contact/contact_trials.h"
 #include "app/studies/contact/scenes.h"
 #include "contact/course_limits.h"
 #include "core/csv.h"
@@ -20,9 +20,9 @@
 namespace patina::test {
 namespace {
 
-constexpr double kMostCreated = 5e-6; // [J] a loop
+constexpr double kMaxCreated = 5e-6; // [J] a loop
 
-// How often a tick looks at the field 0, 1, 2 ... times, and what that comes to.
+// Number of ticks with 0, 1, 2 ... field evaluations, and their mean.
 void printSamples(const char* what, const std::vector<double>& samples) {
   std::map<long, long> times;
   double sum = 0;
@@ -38,21 +38,21 @@ void printSamples(const char* what, const std::vector<double>& samples) {
   std::printf("\n");
 }
 
-CourseReport courseOn(const ContactScene& scene, int resolution, long contacts) {
-  CourseReport all;
+TrialReport courseOn(const ContactScene& scene, int resolution, long contacts) {
+  TrialReport all;
   const ExactSurface surface(scene.meshes);
   for (const double iso : scene.isos) {
     const auto snapshot = contactSnapshot(contactField(scene, iso, resolution), iso, "");
-    all.add(runCourse(methodOf(*snapshot), surface, iso, contacts, courseSeed(scene, iso, 1)));
+    all.add(runTrials(methodOf(*snapshot), surface, iso, contacts, trialSeed(scene, iso, 1)));
   }
   return all;
 }
 
-TEST(ContactCourse, IsPassedOnEveryShape) {
-  CourseReport all;
+TEST(ContactTrials, PassOnEveryShape) {
+  TrialReport all;
   for (const ContactScene& scene : judgedScenes()) {
-    const CourseReport report = courseOn(scene, 150, longer(2000));
-    // Of a million ticks one may pull, and is then in one scene.
+    const TrialReport report = courseOn(scene, 150, longer(2000));
+    // One in a million ticks may pull, and it lies in one scene.
     expectFaultless(report, scene.name, isLong() ? 1 : 0);
     all.add(report);
   }
@@ -68,11 +68,11 @@ TEST(ContactCourse, IsPassedOnEveryShape) {
   expectExact(all, "all");
 }
 
-// Of the p99 of the error in the voxel, over 75, 150 and 300 voxels.
+// Fitted order of the p99 error in the voxel, over 75, 150 and 300 voxels.
 double orderOn(const std::vector<ContactScene>& scenes, long contacts) {
   std::vector<double> log_voxel, log_error;
   for (const int resolution : {75, 150, 300}) {
-    CourseReport all;
+    TrialReport all;
     for (const ContactScene& scene : scenes) all.add(courseOn(scene, resolution, contacts));
     const double voxel = contactField(scenes[0], 0, resolution)->grid.voxel;
     const double error = percentiles(all.error).p99;
@@ -85,12 +85,12 @@ double orderOn(const std::vector<ContactScene>& scenes, long contacts) {
   return dx.dot(dy) / dx.squaredNorm();
 }
 
-// Tilted against the grid, so that edges lie in their cells in every way: of those along its axes
-// the error depends on where in a cell a resolution happens to put them. Where faces are no wider
+// Scenes are tilted against the grid, so that edges cross their cells in every way: along the axes
+// the error depends on the position of an edge in its cell. Where faces are no wider
 // than a voxel, the oracle's contact point rests on one and leaps to the next, which no grid of
-// that voxel can know (docs/studies.md); surfaces without faces are judged in
+// that voxel resolves (docs/studies.md); surfaces without faces are judged in
 // smooth_truth_test.cpp.
-TEST(ContactCourse, ErrorFallsWithTheVoxelWhereFacesAreLarge) {
+TEST(ContactTrials, ErrorFallsWithTheVoxelWhereFacesAreLarge) {
   std::vector<ContactScene> scenes;
   for (const char* name : {"roomt", "groove60t", "plate4t"}) scenes.push_back(contactScene(name));
   for (const char* name : {"box", "L"}) {
@@ -100,7 +100,7 @@ TEST(ContactCourse, ErrorFallsWithTheVoxelWhereFacesAreLarge) {
   EXPECT_GE(orderOn(scenes, longer(2000)), 0.9);
 }
 
-// Whether the surface is one plane within `radius` of the point of it that is nearest to p.
+// True if the surface is one plane within `radius` of its point nearest to p.
 bool isFlat(const ExactSurface& surface, const Vec3& p, double radius) {
   constexpr double kSamePlane = 0.99998; // cosine of 0.36 degrees
   const ExactSurface::Nearest nearest = surface.nearest(p);
@@ -111,18 +111,18 @@ bool isFlat(const ExactSurface& surface, const Vec3& p, double radius) {
   });
 }
 
-// On bodies with faces as wide as voxels most ticks are by an edge (nine in ten at 300 voxels, two
-// in three at 600), whose place a field tells to a part of a voxel: there c turns from one face's
-// foot to the next's within a voxel, the exact one at once, and p99 is an error of that kind until
-// less than a hundredth of the ticks is by an edge. Elsewhere hardly anything is left of it.
-TEST(ContactCourse, ErrorIsWithinTwoVoxelsOfEdges) {
+// On bodies with faces as wide as voxels most ticks are near an edge (nine in ten at 300 voxels,
+// two in three at 600). A field locates an edge to a fraction of a voxel: there c turns from one
+// face's foot to the next's within a voxel, the exact one at once, and p99 is an error of that kind
+// until less than a hundredth of the ticks is near an edge. Elsewhere hardly any error is left.
+TEST(ContactTrials, ErrorIsWithinTwoVoxelsOfEdges) {
   for (const int resolution : {150, 300}) {
     std::vector<double> flat, all;
     for (const char* name : {"spheres", "torus", "dinosaur", "pottery", "rough"}) {
       const ContactScene scene = contactScene(name);
       const ExactSurface surface(scene.meshes);
       const auto snapshot = contactSnapshot(contactField(scene, 0, resolution), 0, "");
-      const CourseReport report = runCourse(methodOf(*snapshot), surface, 0, longer(2000), 5);
+      const TrialReport report = runTrials(methodOf(*snapshot), surface, 0, longer(2000), 5);
       ASSERT_EQ(report.error.size(), report.error_at.size());
       for (std::size_t i = 0; i < report.error.size(); ++i)
         if (isFlat(surface, report.error_at[i], 2 * snapshot->field->grid.voxel))
@@ -137,23 +137,22 @@ TEST(ContactCourse, ErrorIsWithinTwoVoxelsOfEdges) {
   }
 }
 
-TEST(ContactCourse, NoLoopGivesEnergy) {
+TEST(ContactTrials, NoLoopGivesEnergy) {
   for (const ContactScene& scene : judgedScenes()) {
     const ExactSurface surface(scene.meshes);
     for (const double iso : scene.isos) {
       const auto snapshot = contactSnapshot(contactField(scene, iso, 150), iso, "");
       const int loops = static_cast<int>(longer(10));
       const LoopReport report =
-          runLoops(methodOf(*snapshot), surface, iso, loops, courseSeed(scene, iso, 2));
+          runLoops(methodOf(*snapshot), surface, iso, loops, trialSeed(scene, iso, 2));
       EXPECT_EQ(report.loops, loops) << scene.name;
-      EXPECT_LE(report.created, kMostCreated) << scene.name << " at " << iso;
+      EXPECT_LE(report.generated_energy, kMaxCreated) << scene.name << " at " << iso;
     }
   }
 }
 
-// Pressed through their middle to 3 N the tip comes out on the other side, and is still pushed
-// back.
-TEST(ThinPlate, NeverTurnsTheForceRound) {
+// Pressed through the middle to 3 N, the tip leaves on the other side and is still pushed back.
+TEST(ThinPlate, NeverReversesTheForce) {
   for (const double thickness : {1e-3, 2e-3, 3e-3, 4e-3})
     for (const bool turned : {false, true}) {
       ContactScene scene{"plate", {plateSolid(thickness)}};
@@ -168,11 +167,11 @@ TEST(ThinPlate, NeverTurnsTheForceRound) {
           const double top = 0.5 * thickness + iso, step = speed * kTick;
           const Vec3 foot = across.unitOrthogonal() * 0.3e-3;
           for (double z = top + 3e-3; z > top - 6e-3; z -= step) tips.push_back(foot + z * across);
-          ContactJudge judge(methodOf(*snapshot), surface, iso);
-          CourseReport report;
+          ContactChecker checker(methodOf(*snapshot), surface, iso);
+          TrialReport report;
           double last = 0;
           for (const Vec3& tip : tips) {
-            const double push = judge.feel(tip, report).force.dot(across);
+            const double push = checker.feel(tip, report).force.dot(across);
             EXPECT_GE(push, last - kWorstStep) << thickness << ' ' << turned << ' ' << iso;
             if (push < last - kWorstStep) break;
             last = push;
@@ -184,11 +183,11 @@ TEST(ThinPlate, NeverTurnsTheForceRound) {
     }
 }
 
-CourseReport along(const ContactScene& scene, const std::vector<Vec3>& tips, double iso,
-                   const std::string& key) {
+TrialReport along(const ContactScene& scene, const std::vector<Vec3>& tips, double iso,
+                  const std::string& key) {
   const ExactSurface surface(scene.meshes);
   Scene values;
-  values.haptics.stiffness = kJudgeStiffness;
+  values.haptics.stiffness = kTestStiffness;
   values.haptics.force_limit = 1e3;
   if (iso > 0) setValue(values, key, std::to_string(iso));
   const auto snapshot = compileStages(values, contactField(scene, iso, 150));
@@ -206,11 +205,11 @@ TEST(RecordedPath, IntoTheCornerOfAnL) {
   const auto mesh = sharedData("contact_paths/L.obj"), path = sharedData("contact_paths/Lpath.csv");
   PATINA_SKIP_WITHOUT(mesh);
   ContactScene scene{"L", {inMetres(readMesh(mesh), MeshUnit::mm).mesh}};
-  // The file's faces look inwards; the program turns them, the oracle takes them as they are.
+  // The file's faces point inwards; the program flips them, the oracle does not.
   if (ExactSurface(scene.meshes).distance(Vec3(1, 1, 1)) < 0)
     for (auto& triangle : scene.meshes[0].triangles) std::swap(triangle[1], triangle[2]);
   for (const char* key : {"offset", "tip.radius"}) {
-    const CourseReport report = along(scene, recorded(path), 2e-3, key);
+    const TrialReport report = along(scene, recorded(path), 2e-3, key);
     EXPECT_GT(report.contacts, 100);
     expectFaultless(report, key);
   }
@@ -219,7 +218,7 @@ TEST(RecordedPath, IntoTheCornerOfAnL) {
 TEST(RecordedPath, AcrossTheGalleon) {
   const auto path = sharedData("contact_paths/galleon_path.csv");
   PATINA_SKIP_WITHOUT(path);
-  const CourseReport report = along(contactScene("galleon"), recorded(path), 1e-3, "tip.radius");
+  const TrialReport report = along(contactScene("galleon"), recorded(path), 1e-3, "tip.radius");
   EXPECT_GT(report.contacts, 500);
   expectFaultless(report, "galleon");
 }
@@ -227,13 +226,13 @@ TEST(RecordedPath, AcrossTheGalleon) {
 TEST(RecordedPath, OverTheDinosaur) {
   const auto path = sharedData("contact_paths/dinosaur_path.csv");
   PATINA_SKIP_WITHOUT(path);
-  const CourseReport report =
+  const TrialReport report =
       along({"dinosaur", {patina::dinosaur()}}, recorded(path), 0, "tip.radius");
   EXPECT_GT(report.contacts, 100);
   expectFaultless(report, "dinosaur");
 }
 
-// Down to the floor of an L, along it into the corner and up its wall, each pressed into by 1.5 mm.
+// The tip goes down to the floor of an L, along it into the corner and up its wall, 1.5 mm deep.
 TEST(OwnPath, IntoTheCornerOfAnL) {
   std::vector<Vec3> tips = {Vec3(-0.012, 0.3e-3, 0.005)};
   for (const auto& [to, speed] :
@@ -248,17 +247,17 @@ TEST(OwnPath, IntoTheCornerOfAnL) {
       tips.push_back(from + static_cast<double>(i) / count * (to - from));
   }
   for (const char* key : {"offset", "tip.radius"}) {
-    const CourseReport report = along(contactScene("L"), tips, 2e-3, key);
+    const TrialReport report = along(contactScene("L"), tips, 2e-3, key);
     EXPECT_GT(report.contacts, 500);
     expectFaultless(report, key);
   }
 }
 
-// Touches one after another, as the course has them, with another seed.
-CourseReport ownTouches(const ContactScene& scene, double iso) {
+// Touches one after another, as in the other trials, with another seed.
+TrialReport ownTouches(const ContactScene& scene, double iso) {
   const ExactSurface surface(scene.meshes);
   const auto snapshot = contactSnapshot(contactField(scene, iso, 150), iso, "");
-  return runCourse(methodOf(*snapshot), surface, iso, 5000, 77);
+  return runTrials(methodOf(*snapshot), surface, iso, 5000, 77);
 }
 
 TEST(OwnPath, AcrossTheGalleon) {

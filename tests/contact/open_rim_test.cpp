@@ -1,5 +1,5 @@
-// Where a one-sided open surface ends: over its rim, past it, and from behind. It is the front of a
-// plate, and feels like one.
+// Contact at the boundary of a one-sided open surface: over it, past it, and from behind. The
+// surface is the front of a thickened sheet and renders like one.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +12,7 @@
 #include "contact/ways.h"
 #include "geometry/mesh/shapes.h"
 #include "support/changed_mesh.h"
+#include "support/mesh_defects.h"
 
 namespace patina::test {
 namespace {
@@ -33,7 +34,7 @@ struct Plate {
 
   struct Run {
     double excess = 0; // [N], of |dF| beyond 2 K |dx| + K v_s dt
-    double given = 0;  // [J], the most that the hand got from free to free
+    double given = 0;  // [J], the largest energy gained by the hand between free states
     int faults = 0;
     double most = 0, last = 0; // [N], |F|
   };
@@ -48,7 +49,7 @@ struct Plate {
       if (began) {
         const double step = (tip - before.tip).norm();
         run.excess = std::max(run.excess, (now.force - before.force).norm() -
-                                              kJudgeStiffness * (2 * step + kOwnSpeed * kTick));
+                                              kTestStiffness * (2 * step + kOwnSpeed * kTick));
         work = before.touching || now.touching
                    ? work + 0.5 * (now.force + before.force).dot(tip - before.tip)
                    : 0;
@@ -113,15 +114,15 @@ std::vector<Shape> shapes() {
           {"sheets 8 mm apart", joined(flat(), moved(flat(), Vec3(0.02, 0.01, 8e-3)))}};
 }
 
-TEST(OpenRim, IsThatOfThePlateWhoseFrontTheSheetIs) {
-  CourseReport all;
+TEST(OpenRim, MatchesTheThickenedSheet) {
+  TrialReport all;
   for (const double iso : {0.0, 1e-3, 2e-3})
     for (const bool turned : {false, true}) {
       const Plate plate("sheet", turned ? tilted(flat()) : flat(), iso);
       const TriangleMesh solid = solidUnder(plate.thickness());
       const ExactSurface surface({turned ? tilted(solid) : solid});
-      const CourseReport report =
-          runCourse(methodOf(*plate.snapshot), surface, iso, longer(10000), 5);
+      const TrialReport report =
+          runTrials(methodOf(*plate.snapshot), surface, iso, longer(10000), 5);
       const Percentiles error = percentiles(report.error);
       const std::string what = plate.name + (turned ? ", turned" : "");
       std::printf("%-24s %ld ticks in contact, %ld lost, %ld pulls, step %.3f N, error p50 %.4f "
@@ -134,7 +135,7 @@ TEST(OpenRim, IsThatOfThePlateWhoseFrontTheSheetIs) {
   expectExact(all, "plates");
 }
 
-TEST(OpenRim, LetsGoOfATipThatSlippedOverIt) {
+TEST(OpenRim, ReleasesATipThatSlipsOff) {
   for (const double iso : {0.0, 1e-3, 2e-3}) {
     const Plate plate("sheet", flat(), iso);
     for (const double past : {1e-3, 2e-3, 8e-3})
@@ -142,7 +143,7 @@ TEST(OpenRim, LetsGoOfATipThatSlippedOverIt) {
         for (const double deep : {1.2e-3, kPressed, 5e-3}) {
           const double z = iso - deep, x = kHalf + iso + past;
           std::vector<Vec3> corners = {{0.04, 1e-3, 8e-3}, {0.04, 1e-3, z}, {kHalf - 6e-3, 0, z}};
-          EXPECT_NEAR(plate.along(corners, speed).last, kJudgeStiffness * deep, 0.05) << plate.name;
+          EXPECT_NEAR(plate.along(corners, speed).last, kTestStiffness * deep, 0.05) << plate.name;
           corners.insert(corners.end(), {Vec3(x, 0, z), Vec3(x, 0, -0.04), Vec3(0.03, 0, -0.04)});
           const Plate::Run run = plate.along(corners, speed);
           EXPECT_EQ(run.last, 0) << plate.name << ' ' << past << ' ' << speed << ' ' << deep;
@@ -152,8 +153,8 @@ TEST(OpenRim, LetsGoOfATipThatSlippedOverIt) {
   }
 }
 
-// Its back is where the band ends, and holds like any surface.
-TEST(OpenRim, IsMetFromBehindWithoutAStep) {
+// The back lies at the end of the band and holds like any surface.
+TEST(OpenRim, ContactFromBehindHasNoForceStep) {
   for (const double iso : {0.0, 1e-3})
     for (const double speed : {0.01, 0.05, 0.5})
       for (const Vec3& aside : {Vec3(0, 0, 0), Vec3(0.02, -0.03, 0), Vec3(0.04, 0.01, 0)}) {
@@ -161,7 +162,7 @@ TEST(OpenRim, IsMetFromBehindWithoutAStep) {
         const double back = -plate.thickness() - iso;
         const Vec3 from = aside + Vec3(0.002, 0, back - 0.02), to = aside + Vec3(0, 0, back + 2e-3);
         const Plate::Run in = plate.along({from, to}, speed);
-        EXPECT_NEAR(in.last, kJudgeStiffness * 2e-3, 0.05) << plate.name;
+        EXPECT_NEAR(in.last, kTestStiffness * 2e-3, 0.05) << plate.name;
         const Plate::Run run = plate.along({from, to, from}, speed);
         EXPECT_EQ(run.last, 0) << plate.name;
         EXPECT_EQ(run.faults, 0) << plate.name;
@@ -169,8 +170,8 @@ TEST(OpenRim, IsMetFromBehindWithoutAStep) {
       }
 }
 
-// Anywhere about its rims, in straight pieces.
-TEST(OpenRim, NeitherStepsNorGivesEnergyOnAnyWay) {
+// Polylines around the boundaries.
+TEST(OpenRim, HasNoForceStepsAndGeneratesNoEnergyOnAnyPath) {
   for (const Shape& shape : shapes())
     for (const double iso : {0.0, 1e-3}) {
       const Plate plate(shape.name, shape.mesh, iso);
@@ -189,7 +190,7 @@ TEST(OpenRim, NeitherStepsNorGivesEnergyOnAnyWay) {
           corners.push_back(a + t * (b - a) +
                             7e-3 * Vec3(unit(random), unit(random), unit(random)));
         corners.push_back(far);
-        // Work is told by the trapezium rule: in steps of 10 um.
+        // The trapezium rule needs steps of 10 um to measure work.
         const bool slow = i % 4 == 0;
         const Plate::Run run = plate.along(corners, slow ? 0.01 : 0.02 + 0.24 * (unit(random) + 1));
         EXPECT_EQ(run.faults, 0) << plate.name;

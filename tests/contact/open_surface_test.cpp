@@ -1,5 +1,5 @@
-// Open surfaces: a terrain, a sheet, scans with holes, pressed from their front away from the rim.
-// There they are the surface of a body, and the exact proxy on that body is the judge.
+// Open surfaces (a terrain, a sheet, scans with holes) pressed from the front away from the
+// boundary. There they bound a body, and the exact proxy on that body is the reference.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,22 +10,23 @@
 
 #include <gtest/gtest.h>
 
-#include "app/studies/contact/course.h"
+#include "app/studies/contact/contact_trials.h"
 #include "app/studies/contact/scenes.h"
 #include "contact/course_limits.h"
 #include "contact/ways.h"
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/shapes.h"
 #include "support/changed_mesh.h"
+#include "support/mesh_defects.h"
 #include "support/node_values.h"
 
 namespace patina::test {
 namespace {
 
 constexpr double kSide = 0.1, kBelow = 3e-3; // [m]
-constexpr double kFromRim = 6e-3;            // [m], what a hole says of the surface ends before
+constexpr double kFromRim = 6e-3;            // [m], a hole affects the surface only within it
 constexpr int kFine = 160;                   // 51,200 triangles
-constexpr int kCoarse = 80;                  // so that a voxel does not swallow the noise
+constexpr int kCoarse = 80;                  // the voxel must still resolve the noise
 
 struct OpenSurface {
   std::string name;
@@ -69,8 +70,8 @@ double distanceTo(const std::vector<std::pair<Vec3, Vec3>>& rim, const Vec3& p) 
   return least;
 }
 
-// Down onto a random place, 3 mm into it, 10 mm along it and up again; from behind with side = -1.
-// Empty where that comes near the rim.
+// The tip goes 3 mm into a random point, 10 mm along it and up again; from behind with side = -1.
+// Returns nothing near the boundary.
 std::vector<Vec3> touch(const OpenSurface& surface, const ExactSurface& body,
                         const std::vector<std::pair<Vec3, Vec3>>& rim, double iso, double side,
                         std::mt19937& random) {
@@ -94,26 +95,26 @@ std::vector<Vec3> touch(const OpenSurface& surface, const ExactSurface& body,
   return tips;
 }
 
-CourseReport pressed(const OpenSurface& surface, const ExactSurface& body, double iso,
-                     OpenSides sides, double side) {
+TrialReport pressed(const OpenSurface& surface, const ExactSurface& body, double iso,
+                    OpenSides sides, double side) {
   ContactScene scene{surface.name, {surface.felt}};
   scene.sides = sides;
   const auto snapshot = contactSnapshot(contactField(scene, iso, 150), iso, "");
   const auto rim = rims(surface.felt);
-  ContactJudge judge(methodOf(*snapshot), body, iso);
-  CourseReport report;
+  ContactChecker checker(methodOf(*snapshot), body, iso);
+  TrialReport report;
   std::mt19937 random(11);
   for (int touches = 0; touches < 30;) {
     const std::vector<Vec3> tips = touch(surface, body, rim, iso, side, random);
     if (tips.empty()) continue;
     ++touches;
-    judge.restart();
-    for (const Vec3& tip : tips) judge.feel(tip, report);
+    checker.restart();
+    for (const Vec3& tip : tips) checker.feel(tip, report);
   }
   return report;
 }
 
-void expectHeld(const CourseReport& report, const std::string& what) {
+void expectHeld(const TrialReport& report, const std::string& what) {
   EXPECT_GT(report.contacts, 3000) << what;
   expectFaultless(report, what);
   const Percentiles error = percentiles(report.error);
@@ -123,12 +124,12 @@ void expectHeld(const CourseReport& report, const std::string& what) {
               error.p50, error.p99, error.p999);
 }
 
-TEST(OpenSurface, IsHeldFromItsFrontLikeTheBodyItBounds) {
-  CourseReport all;
+TEST(OpenSurface, FrontContactMatchesTheSolidThatItBounds) {
+  TrialReport all;
   for (const OpenSurface& surface : openSurfaces()) {
     const ExactSurface body({surface.body});
     for (const double iso : {0.0, 1e-3}) {
-      const CourseReport report = pressed(surface, body, iso, OpenSides::one, 1);
+      const TrialReport report = pressed(surface, body, iso, OpenSides::one, 1);
       expectHeld(report, surface.name + (iso > 0 ? " with a tip" : ""));
       all.add(report);
     }
@@ -136,14 +137,14 @@ TEST(OpenSurface, IsHeldFromItsFrontLikeTheBodyItBounds) {
   expectExact(all, "one-sided");
 }
 
-// The triangles themselves are the judge: a sheet without a thickness, about which the tip rolls.
-TEST(OpenSurface, OfTwoSidesIsHeldFromBoth) {
-  CourseReport all;
+// The triangles are the reference: a sheet without thickness, around which the tip rolls.
+TEST(OpenSurface, TwoSidedSurfaceIsTouchedFromBothSides) {
+  TrialReport all;
   for (const OpenSurface& surface : openSurfaces()) {
     if (surface.name == "body with holes") continue; // closed: it has one side
     const ExactSurface sheet({surface.felt});
     for (const double side : {1.0, -1.0}) {
-      const CourseReport report = pressed(surface, sheet, 1e-3, OpenSides::two, side);
+      const TrialReport report = pressed(surface, sheet, 1e-3, OpenSides::two, side);
       expectHeld(report, surface.name + (side > 0 ? " front" : " back"));
       all.add(report);
     }
@@ -151,7 +152,7 @@ TEST(OpenSurface, OfTwoSidesIsHeldFromBoth) {
   expectExact(all, "two-sided");
 }
 
-// Every node in the band of the triangles, by the nearest, where that is not the rim.
+// Every node in the band of the triangles, by the nearest one, except at the boundary.
 struct Sides {
   std::size_t wrong = 0, judged = 0;
 };
@@ -177,7 +178,7 @@ Sides sidesOf(const SurfaceField& field, const TriangleMesh& mesh) {
   return sides;
 }
 
-// Steep waves; sheets closer than their plates are thick.
+// Steep waves, and sheets closer than their thickness.
 std::vector<OpenSurface> awkwardSurfaces() {
   const int cells = 100;
   TriangleMesh waves = reliefBlock(kSide, -0.03, cells, [](double x, double y) {
@@ -188,7 +189,7 @@ std::vector<OpenSurface> awkwardSurfaces() {
           {"two sheets", tilted(joined(flat, moved(flat, Vec3(1e-4, 0, 6e-3)))), {}}};
 }
 
-TEST(OpenSurface, IsUnsureNowhere) {
+TEST(OpenSurface, SignsAreUnambiguousEverywhere) {
   std::vector<OpenSurface> surfaces = openSurfaces();
   surfaces.pop_back(); // has an inside
   for (OpenSurface& surface : awkwardSurfaces()) surfaces.push_back(std::move(surface));

@@ -1,4 +1,4 @@
-// The judge judged: exact distance and proxy against closed forms and brute force (T-P1).
+// Tests the exact distance and proxy against closed forms and brute force (T-P1).
 #include <numbers>
 #include <random>
 
@@ -7,13 +7,13 @@
 #include "app/studies/contact/oracle.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/shapes.h"
-#include "geometry/winding/winding_number.h"
 #include "support/judged_scenes.h"
+#include "support/winding_sum.h"
 
 namespace patina::test {
 namespace {
 
-constexpr double kTiny = 2 * kLeastIso; // [m], what iso 0 is off by, along two planes
+constexpr double kTiny = 2 * kMinIso; // [m], the distance error at iso 0, along two planes
 
 ExactSurface surfaceOf(TriangleMesh mesh) {
   return ExactSurface({std::move(mesh)});
@@ -24,7 +24,7 @@ Vec3 randomIn(std::mt19937& random, const Vec3& low, const Vec3& high) {
   return low + Vec3(unit(random), unit(random), unit(random)).cwiseProduct(high - low);
 }
 
-TEST(ContactScenes, AreClosedAndFaceOutwardsButGalleonAndScan) {
+TEST(ContactScenes, AreClosedAndFaceOutwardsExceptGalleonAndScan) {
   for (const ContactScene& scene : judgedScenes()) {
     if (scene.name == "galleon" || scene.name == "scan") continue;
     for (const TriangleMesh& mesh : scene.meshes) {
@@ -37,7 +37,7 @@ TEST(ContactScenes, AreClosedAndFaceOutwardsButGalleonAndScan) {
   }
 }
 
-TEST(ExactDistance, OfABoxIsItsClosedForm) {
+TEST(ExactDistance, MatchesTheClosedFormOfABox) {
   const Vec3 half(0.05, 0.04, 0.03);
   const ExactSurface surface = surfaceOf(box(2 * half));
   std::mt19937 random(1);
@@ -66,7 +66,7 @@ TEST(ExactDistance, HasTheSignOfTheWindingNumber) {
   }
 }
 
-TEST(ExactDistance, OfAUnionIsTheLeastOfItsParts) {
+TEST(ExactDistance, IsTheMinimumOverThePartsOfAUnion) {
   const ContactScene scene = contactScene("spheres");
   const ExactSurface both(scene.meshes), a = surfaceOf(scene.meshes[0]),
                                          b = surfaceOf(scene.meshes[1]);
@@ -77,7 +77,7 @@ TEST(ExactDistance, OfAUnionIsTheLeastOfItsParts) {
   }
 }
 
-// A corner of three planes: the projection is the greater of tip and iso, one coordinate at a time.
+// In a corner of three planes the projection is the larger of tip and iso in each coordinate.
 TEST(ProxyOracle, IsTheProjectionOnThreeHalfSpaces) {
   const ExactSurface room = surfaceOf(roomSolid());
   std::mt19937 random(4);
@@ -108,8 +108,8 @@ TEST(ProxyOracle, IsTheProjectionOnTwoHalfSpaces) {
   }
 }
 
-// Beside an edge or vertex of a convex solid the surface at iso is round.
-TEST(ProxyOracle, IsRoundAboutOuterEdgesAndVertices) {
+// Near an edge or vertex of a convex solid the iso-surface is round.
+TEST(ProxyOracle, IsRoundAroundOuterEdgesAndVertices) {
   const Vec3 half(0.05, 0.04, 0.03);
   const ExactSurface surface = surfaceOf(box(2 * half));
   std::mt19937 random(6);
@@ -128,7 +128,7 @@ TEST(ProxyOracle, IsRoundAboutOuterEdgesAndVertices) {
   EXPECT_GT(tried, 300);
 }
 
-TEST(ProxyOracle, StaysOnItsSideOfAPlateHoweverDeepTheTip) {
+TEST(ProxyOracle, StaysOnItsSideOfAThinWallAtAnyDepth) {
   for (const bool tilt : {false, true}) {
     const Eigen::Affine3d pose(
         tilt ? Eigen::Affine3d(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()))
@@ -141,13 +141,13 @@ TEST(ProxyOracle, StaysOnItsSideOfAPlateHoweverDeepTheTip) {
         const ProxyAnswer answer = proxyOracle(plate, iso, pose * tip, pose * c, 1.6e-4);
         c = pose.inverse() * answer.point;
         const Vec3 expected(tip.x(), tip.y(), std::max(tip.z(), 0.5e-3 + iso));
-        ASSERT_LE((c - expected).norm(), 1.1 * kLeastIso) << i;
+        ASSERT_LE((c - expected).norm(), 1.1 * kMinIso) << i;
       }
     }
   }
 }
 
-// Pressed against a side near an outer edge, it slides round the edge where that is nearer.
+// Pressed against a side near an outer edge, it slides around the edge if that is nearer.
 TEST(ProxyOracle, SlidesOffAnOuterEdge) {
   const ExactSurface surface = surfaceOf(box(Vec3(0.1, 0.08, 0.06)));
   const Vec3 tip(0.049, 0.01, 0.025); // 1 mm from +x, 5 mm from +z
@@ -158,7 +158,7 @@ TEST(ProxyOracle, SlidesOffAnOuterEdge) {
   EXPECT_LE((off.point - beyond).norm(), kTiny); // free: past the edge nothing holds it
 }
 
-TEST(ProxyOracle, KeepsWithinItsBall) {
+TEST(ProxyOracle, StaysWithinItsBall) {
   const ExactSurface room = surfaceOf(roomSolid());
   std::mt19937 random(7);
   for (int i = 0; i < 500; ++i) {
@@ -168,7 +168,7 @@ TEST(ProxyOracle, KeepsWithinItsBall) {
     const ProxyAnswer answer = proxyOracle(room, iso, tip, seed, ball);
     EXPECT_LE((answer.point - seed).norm(), ball + 1e-9);
     EXPECT_GE(room.distance(answer.point), iso - 1e-9);
-    // Convex here: no feasible point of the ball is nearer; tried densely.
+    // The shape is convex here: a dense search finds no nearer feasible point of the ball.
     const double reached = (answer.point - tip).norm();
     for (int k = 0; k < 300; ++k) {
       const Vec3 y = (seed + randomIn(random, Vec3::Constant(-ball), Vec3::Constant(ball)));
@@ -178,7 +178,7 @@ TEST(ProxyOracle, KeepsWithinItsBall) {
   }
 }
 
-// On any shape: the answer is feasible and nothing free close by is nearer to the tip.
+// On any shape the answer is feasible, and no free point nearby is nearer to the tip.
 TEST(ProxyOracle, IsALocalMinimumOnEveryScene) {
   for (const ContactScene& scene : judgedScenes()) {
     const ExactSurface surface(scene.meshes);
@@ -206,8 +206,8 @@ TEST(ProxyOracle, IsALocalMinimumOnEveryScene) {
           for (int k = 0; k < 100; ++k) {
             const Vec3 way(normal(random), normal(random), normal(random));
             const Vec3 y = c.point + reach * way.normalized();
-            if (surface.distance(y) < std::max(iso, kLeastIso)) continue;
-            // Where a face is round, probes of the surface beside c gain to the second order.
+            if (surface.distance(y) < std::max(iso, kMinIso)) continue;
+            // On a round face, probes of the surface near c gain to the second order.
             EXPECT_GE((y - tip).norm(), depth - 1e-2 * reach)
                 << scene.name << ' ' << iso << " tip " << tip.transpose() << " c "
                 << c.point.transpose() << " better " << (y - c.point).transpose();

@@ -1,5 +1,5 @@
 // On surfaces without faces, where the contact point has a closed form, the error of the force
-// falls with the voxel: of a mesh that stands for one, the judge's own faces would be seen.
+// falls with the voxel. With a mesh the facets would limit it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/studies/contact/course.h"
+#include "app/studies/contact/contact_trials.h"
 #include "app/studies/contact/scenes.h"
 #include "core/percentiles.h"
 #include "support/longer.h"
@@ -20,19 +20,19 @@
 namespace patina::test {
 namespace {
 
-// `spine`: the nearest point of the line or place about which the surface is, `radius` away.
+// `spine` returns the nearest point of the line or point that the surface surrounds at `radius`.
 struct Round {
   std::string name;
   double radius;
-  double most_error;  // [N], p99 at 150 voxels
-  double least_order; // of p99
+  double max_error; // [N], p99 at 150 voxels
+  double min_order; // fitted order of p99
   std::function<Vec3(const Vec3&)> spine;
 
   Vec3 out(const Vec3& p) const { return (p - spine(p)).normalized(); }
   Vec3 on(const Vec3& p, double iso) const { return spine(p) + (radius + iso) * out(p); }
 };
 
-// Not along the axes of the grid.
+// The shapes are not aligned with the grid.
 const Vec3 kAlong = Vec3(3, 1, 2).normalized();
 
 std::vector<Round> rounds() {
@@ -71,7 +71,7 @@ std::vector<double> errorsOn(const Round& round, double iso, int resolution, lon
     Vec3 c = round.on(0.03 * Vec3(normal(random), normal(random), normal(random)), iso);
     Vec3 way(normal(random), normal(random), normal(random));
     const double step = 1e-5 * std::pow(50, any(random)), pace = 0.002 + 0.02 * any(random);
-    // So that c need not run: P04 lets it go by itself at kOwnSpeed.
+    // Limits the step so that c need not run: P04 moves it by itself at kOwnSpeed.
     const double whole = round.radius + iso,
                  most = std::min({0.006, 0.75 * whole, 0.8 * kOwnSpeed * kTick / step * whole});
     for (int i = 0; i < 300; ++i) {
@@ -84,7 +84,7 @@ std::vector<double> errorsOn(const Round& round, double iso, int resolution, lon
       EXPECT_FALSE(contact.fault) << round.name;
       if (depth < 0.5 * field->grid.voxel) continue;
       snaps += contact.snap;
-      errors.push_back((contact.force - kJudgeStiffness * depth * out).norm());
+      errors.push_back((contact.force - kTestStiffness * depth * out).norm());
     }
   }
   EXPECT_LE(200 * snaps, contacts) << round.name; // 14 of 4000 at most
@@ -101,8 +101,8 @@ TEST(SmoothSurface, ErrorOfTheForceFallsWithTheVoxel) {
                     1e3 * iso, resolution, error.p50, error.p99, error.p999);
         p99.push_back(error.p99);
       }
-      EXPECT_GE(std::log2(p99[0] / p99[2]) / 2, round.least_order) << round.name << ' ' << iso;
-      EXPECT_LE(p99[1], round.most_error) << round.name << ' ' << iso;
+      EXPECT_GE(std::log2(p99[0] / p99[2]) / 2, round.min_order) << round.name << ' ' << iso;
+      EXPECT_LE(p99[1], round.max_error) << round.name << ' ' << iso;
     }
 }
 

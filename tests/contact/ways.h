@@ -1,4 +1,4 @@
-// Ways of a tip, and the rims they lead over.
+// Paths of a tip, and the boundaries that they cross.
 #pragma once
 
 #include <algorithm>
@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "app/studies/contact/course.h"
+#include "app/studies/contact/contact_trials.h"
 
 namespace patina::test {
 
-// Through the corners at one speed [m/s], a place a tick.
+// Returns positions along the polyline at one speed [m/s], one per tick.
 inline std::vector<Vec3> way(const std::vector<Vec3>& corners, double speed) {
   std::vector<Vec3> tips = {corners.front()};
   for (const Vec3& to : corners) {

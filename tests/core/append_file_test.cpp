@@ -37,7 +37,7 @@ TEST_F(AppendFileTest, PiecesFollowOneAnother) {
   EXPECT_EQ(readFile(path), "begin\ntwo\n");
 }
 
-TEST_F(AppendFileTest, AFileThatWasReplacedIsNotWritten) {
+TEST_F(AppendFileTest, ReplacedFileIsNotWritten) {
   AppendFile file(path);
   file.append("one\n");
   writeFileAtomically(path, "theirs\n");
@@ -47,7 +47,7 @@ TEST_F(AppendFileTest, AFileThatWasReplacedIsNotWritten) {
   EXPECT_EQ(file.size(), 10u);
 }
 
-TEST_F(AppendFileTest, OneWriterAtATime) {
+TEST_F(AppendFileTest, HasOneWriterAtATime) {
   {
     const AppendFile first(path);
     EXPECT_THROW(AppendFile second(path), FileError);
@@ -72,7 +72,7 @@ TEST_F(AppendFileTest, MustExist) {
   EXPECT_FALSE(fs::exists(folder / "none"));
 }
 
-TEST_F(AppendFileTest, AFullDiskLeavesNoPartOfAPiece) {
+TEST_F(AppendFileTest, FullDiskLeavesNoPartOfAPiece) {
   const pid_t child = fork();
   if (child == 0) {
     std::signal(SIGXFSZ, SIG_IGN); // a short write, then an error, as on a full disk

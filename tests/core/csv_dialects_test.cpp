@@ -1,4 +1,4 @@
-// Tables as spreadsheets and other programs write them.
+// Tables from spreadsheets and other programs.
 #include "core/csv.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ std::string asUtf16(const std::string& text, bool big) {
   return bytes;
 }
 
-TEST(CsvDialects, TheSameTableIsReadAsEveryProgramWritesIt) {
+TEST(CsvDialects, SameTableIsReadInTheDialectOfEachProgram) {
   const std::string plain = "t [s],x [m],y [m],z [m]\n0,1.5,-2.25,3\n0.25,4,5.125,-6e-3\n";
   const std::string semicolons = "t [s];x [m];y [m];z [m]\n0;1,5;-2,25;3\n0,25;4;5,125;-6e-3\n";
   const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
@@ -71,6 +71,7 @@ TEST(CsvDialects, TheSameTableIsReadAsEveryProgramWritesIt) {
       "\n\n" + plain + "\n\n",
       "# made by a logger\n#\n" + plain,
       "# " + plain,
+      "% made by MATLAB\n%\n" + plain,
       replaced(plain, "\n", ",\n"),
       replaced(semicolons, "\n", ";\n") + ";;;;\n",
       "\"t [s]\",\"x [m]\",\"y [m]\",\"z "
@@ -92,7 +93,7 @@ TEST(CsvDialects, TheSameTableIsReadAsEveryProgramWritesIt) {
   for (const std::string& text : texts) EXPECT_EQ(readTable(text).rows, kTableRows) << text;
 }
 
-TEST(CsvDialects, AThousandthIsExactlyThatOfTheDecimalNumber) {
+TEST(CsvDialects, MillimetresConvertExactlyLikeTheDecimalNumber) {
   const auto rows = readTable("x [mm]\n52\n0.1\n", {{"x [m]"}}).rows;
   EXPECT_EQ(rows, (TableRows{{0.052}, {0.1 / 1000}}));
 }
@@ -107,7 +108,7 @@ TEST(CsvDialects, UnitsOfForcesAccelerationsAndAnglesAreConverted) {
   EXPECT_EQ(rows, (TableRows{{1.5, 2 * 9.80665, 9.81, M_PI, 1, 0.25, 1}}));
 }
 
-TEST(CsvDialects, ColumnsThatNobodyReadsAreNamed) {
+TEST(CsvDialects, UnreadColumnsAreNamed) {
   EXPECT_EQ(readTable("t [s],x [m],y [m],z [m]\n").left_out, "");
   EXPECT_EQ(readTable("t [s],x [m],u,y [m],z [m]\n").left_out, "a.csv: column left out: u");
   EXPECT_EQ(readTable("t [s],x [mm],x [m],y [m],z [m],b\n").left_out,
@@ -117,7 +118,7 @@ TEST(CsvDialects, ColumnsThatNobodyReadsAreNamed) {
             "a.csv: columns left out: a, b, c, d, e, f, g, h and 2 more");
 }
 
-TEST(CsvDialects, AnOptionalColumnThatIsNotThereIsNaN) {
+TEST(CsvDialects, MissingOptionalColumnIsNaN) {
   const CsvColumns columns{{"x [m]"}, {"sigma [m]", "u"}};
   CsvReader reader(sourceOfText("u,x [m]\n7,1\n"), "a.csv", columns);
   std::vector<double> row;
@@ -130,7 +131,7 @@ TEST(CsvDialects, AnOptionalColumnThatIsNotThereIsNaN) {
   EXPECT_EQ(reader.firstNotFinite(), "");
 }
 
-TEST(CsvDialects, TheFirstValueThatIsNotFiniteIsNamedWithItsPlace) {
+TEST(CsvDialects, FirstNonFiniteValueIsNamedWithItsPosition) {
   for (const char* text : {"nan", "NaN", "-nan", "inf", "-Inf", "1.#IND", "-1.#IND", "1.#INF",
                            "1.#QNAN0", "-nan(ind)", "infinity"}) {
     const ReadTable found =
@@ -143,7 +144,7 @@ TEST(CsvDialects, TheFirstValueThatIsNotFiniteIsNamedWithItsPlace) {
   EXPECT_EQ(german.not_finite, "line 2: x [mm] is '1,#IND'");
 }
 
-TEST(CsvDialects, WhatCannotBeReadIsNamed) {
+TEST(CsvDialects, FaultsAreNamed) {
   const auto says = [](const std::string& text, const std::string& cause,
                        const CsvColumns& columns = kTipColumns) {
     const std::string found = tableRefusal(text, columns);

@@ -51,7 +51,7 @@ TEST(Csv, NamesADecimalCommaAsSuch) {
             "tip.csv:2: 5 values where the header names 4, separated by commas");
 }
 
-TEST(Csv, KeepsTheMessageOnOneLineWhateverTheFileHolds) {
+TEST(Csv, KeepsTheMessageOnOneLineForAnyContent) {
   std::string hostile = "\x01\x02\r\x03";
   hostile.append(5000, 'z');
   const std::string error = csvError(hostile);
@@ -59,7 +59,7 @@ TEST(Csv, KeepsTheMessageOnOneLineWhateverTheFileHolds) {
   for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20);
 }
 
-TEST(Csv, WrittenNumbersComeBackBitForBit) {
+TEST(Csv, WrittenNumbersReadBackBitForBit) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   CsvTable table{kTip, {}};
@@ -100,7 +100,7 @@ TEST(Csv, ReadsInPiecesOfAnySizeTheSameRowsAndLines) {
     }
 }
 
-TEST(Csv, ALineWithoutEndIsRefusedBeforeItFillsTheMemory) {
+TEST(Csv, EndlessLineIsRejectedBeforeItFillsTheMemory) {
   std::size_t given = 0;
   const auto endless = [&](char* buffer, std::size_t capacity) {
     std::fill_n(buffer, capacity, '1');
@@ -111,7 +111,7 @@ TEST(Csv, ALineWithoutEndIsRefusedBeforeItFillsTheMemory) {
   EXPECT_LT(given, std::size_t{1} << 22);
 }
 
-TEST(Csv, WhatIsNotCommittedLeavesNothing) {
+TEST(Csv, UncommittedFileLeavesNothing) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("patina_csv_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);

@@ -27,7 +27,7 @@ class FileTest : public testing::Test {
   fs::path folder;
 };
 
-TEST_F(FileTest, BytesComeBack) {
+TEST_F(FileTest, BytesReadBack) {
   std::string bytes;
   for (int i = 0; i < 300000; ++i) bytes += static_cast<char>(i * 7);
   writeFileAtomically(folder / "a.bin", bytes);
@@ -37,7 +37,7 @@ TEST_F(FileTest, BytesComeBack) {
   EXPECT_EQ(entries(), 1u);
 }
 
-TEST_F(FileTest, ReadsFilesThatDoNotSayTheirSize) {
+TEST_F(FileTest, ReadsFilesOfUnknownSize) {
   EXPECT_NE(readFile("/proc/self/status").find("Pid:"), std::string::npos);
 }
 
@@ -53,7 +53,7 @@ TEST_F(FileTest, ErrorsNameThePath) {
   EXPECT_THROW(writeFileAtomically(folder / "no" / "such" / "folder", "x"), FileError);
 }
 
-TEST_F(FileTest, KeepsThePermissionsOfWhatItReplaces) {
+TEST_F(FileTest, KeepsThePermissionsOfAReplacedFile) {
   writeFileAtomically(folder / "secret", "old");
   ::chmod((folder / "secret").c_str(), 0600);
   writeFileAtomically(folder / "secret", "new");
@@ -62,13 +62,13 @@ TEST_F(FileTest, KeepsThePermissionsOfWhatItReplaces) {
   EXPECT_EQ(info.st_mode & 0777, 0600u);
 }
 
-TEST_F(FileTest, AFullDiskLeavesTheOldFileAndNoLitter) {
+TEST_F(FileTest, FullDiskKeepsTheOldFileAndLeavesNoTemporaryFile) {
   const fs::path path = folder / "data";
   writeFileAtomically(path, "old");
   const pid_t child = fork();
   if (child == 0) {
     std::signal(SIGXFSZ,
-                SIG_IGN); // so that the write fails as on a full disk: short, then an error
+                SIG_IGN); // a write then fails as on a full disk: short, then an error
     const rlimit limit{1000, 1000};
     setrlimit(RLIMIT_FSIZE, &limit);
     try {
@@ -85,14 +85,14 @@ TEST_F(FileTest, AFullDiskLeavesTheOldFileAndNoLitter) {
   EXPECT_EQ(entries(), 1u);
 }
 
-TEST_F(FileTest, MakesFoldersOnTheWay) {
+TEST_F(FileTest, CreatesMissingFolders) {
   makeFolder(folder / "a" / "b" / "c/");
   EXPECT_TRUE(fs::is_directory(folder / "a" / "b" / "c"));
   makeFolder(folder / "a");
   writeFileAtomically(folder / "file", "x");
   EXPECT_THROW(makeFolder(folder / "file"), FileError);
   EXPECT_THROW(makeFolder(folder / "file" / "in"), FileError);
-  try { // where the kernel lets nobody make one, whoever asks
+  try { // the kernel allows no folder here, even for root
     makeFolder("/sys/patina");
     FAIL();
   } catch (const FileError& error) {
@@ -100,7 +100,7 @@ TEST_F(FileTest, MakesFoldersOnTheWay) {
   }
 }
 
-TEST_F(FileTest, KnowsItsTemporaryFiles) {
+TEST_F(FileTest, RecognisesItsTemporaryFiles) {
   EXPECT_TRUE(isTemporaryFor("a.bin", ".a.bin.123-4.tmp"));
   for (const char* other : {"a.bin", ".a.bin.tmp", ".b.bin.123-4.tmp", ".a.bin.x.tmp", ".a.bin."})
     EXPECT_FALSE(isTemporaryFor("a.bin", other)) << other;

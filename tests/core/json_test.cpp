@@ -24,7 +24,7 @@ TEST(Json, KeepsTheOrderOfMembers) {
   EXPECT_EQ(json.dump(-1), R"({"zebra":3,"ant":2})");
 }
 
-TEST(Json, DoublesComeBackBitForBit) {
+TEST(Json, DoublesReadBackBitForBit) {
   std::mt19937_64 random(7);
   std::vector<double> list{0.1, -0.0, 2.0, 1e22, 5e-324, std::numeric_limits<double>::max()};
   for (int i = 0; i < 2000; ++i) {
@@ -46,7 +46,7 @@ TEST(Json, DoublesStayDoublesAfterOthersInTheSameText) {
   EXPECT_EQ(json.dump(-1), "[0.5,2.0]");
 }
 
-TEST(Json, IntegersComeBackExactly) {
+TEST(Json, IntegersReadBackExactly) {
   for (const std::int64_t value :
        {std::int64_t{0}, std::int64_t{-1}, (std::int64_t{1} << 53) + 1,
         std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()})
@@ -58,18 +58,18 @@ TEST(Json, NonFiniteNumbersAreWrittenAsNull) {
   EXPECT_EQ(Json(-INFINITY).dump(), "null");
 }
 
-TEST(Json, StringsWithEveryByteComeBack) {
+TEST(Json, StringsWithEveryByteReadBack) {
   std::string text;
   for (int c = 1; c < 128; ++c) text += static_cast<char>(c);
   text += "\xC3\xA9\xE2\x82\xAC";
   EXPECT_EQ(parseJson(Json(text).dump(), "x").asString(), text);
 }
 
-TEST(Json, BrokenUtf8IsReplacedAndNotThrownOn) {
+TEST(Json, InvalidUtf8IsReplacedAndNotThrown) {
   EXPECT_EQ(parseJson(Json(std::string("a\xFF z")).dump(), "x").asString(), "a\xEF\xBF\xBD z");
 }
 
-TEST(Json, NestedValuesComeBack) {
+TEST(Json, NestedValuesReadBack) {
   const std::string text = R"({"a":[1,2.5,{"b":null}],"c":{},"d":[],"e":true})";
   EXPECT_EQ(parseJson(text, "x").dump(-1), text);
   EXPECT_EQ(parseJson(parseJson(text, "x").dump(2), "x").dump(-1), text);
@@ -96,6 +96,18 @@ TEST(Json, ErrorsNameFileAndLine) {
   EXPECT_TRUE(jsonError("{\"a\": [1, 2").find("ends too early") != std::string::npos);
 }
 
+TEST(Json, AKeyThatStandsTwiceInAnObjectIsAnError) {
+  for (const char* text : {R"({"a": 1, "b": 2, "a": 3})", R"({"x": [{"a": 1, "a": 1}]})"}) {
+    try {
+      (void)parseJson(text, "f.json");
+      ADD_FAILURE() << text;
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("the key 'a' stands twice"), std::string::npos);
+    }
+  }
+  EXPECT_EQ(parseJson(R"([{"a": 1}, {"a": 2}])", "f.json").asArray().size(), 2u);
+}
+
 TEST(Json, EveryTruncationOfAFileIsAnError) {
   const std::string text = R"({"version": 1, "list": [1.5, "a", true, null], "m": {"k": -2e3}})";
   for (std::size_t size = 0; size < text.size(); ++size)
@@ -109,7 +121,7 @@ TEST(Json, HostileDepthIsAnErrorAndNotACrash) {
   EXPECT_EQ(jsonError(std::string(200, '[') + std::string(200, ']')), "");
 }
 
-TEST(Json, RefusesWhatIsNotJson) {
+TEST(Json, RejectsOtherTexts) {
   for (const char* text : {"", "nul", "{'a': 1}", "[1,]", "01", "1 2", "[1e999]", "{\"a\" 1}",
                            "\x01\x02", "[1.5,2,5", "// note\n1"})
     EXPECT_NE(jsonError(text), "") << text;

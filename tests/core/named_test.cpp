@@ -11,17 +11,17 @@ constexpr Named<Color> kColors[] = {
 
 TEST(Named, EveryTextLeadsBackToItsValue) {
   for (const auto& row : kColors)
-    EXPECT_EQ(valueIn(kColors, textIn(kColors, row.value)), row.value);
+    EXPECT_EQ(parseIn(kColors, nameIn(kColors, row.value)), row.value);
 }
 
-TEST(Named, WhatTheTableLacksIsAbsent) {
-  EXPECT_EQ(valueIn(kColors, "Red"), std::nullopt);
-  EXPECT_EQ(textIn(kColors, static_cast<Color>(7)), "");
+TEST(Named, UnknownValuesAreAbsent) {
+  EXPECT_EQ(parseIn(kColors, "Red"), std::nullopt);
+  EXPECT_EQ(nameIn(kColors, static_cast<Color>(7)), "");
 }
 
 TEST(Named, AllTextsAreListedInTheirOrder) {
-  EXPECT_EQ(textsOf(kColors), "red, green, blue");
-  EXPECT_EQ(textsOf(kColors, " or "), "red, green or blue");
+  EXPECT_EQ(allNames(kColors), "red, green, blue");
+  EXPECT_EQ(allNames(kColors, " or "), "red, green or blue");
 }
 
 } // namespace

@@ -21,7 +21,7 @@ TEST(Numbers, ParsesTheWholeTextOrNothing) {
 
 TEST(Numbers, DoNotDependOnTheLocale) {
   const std::string before = std::setlocale(LC_ALL, nullptr);
-  // Debian without locales has none of these; then the test says less, and still holds.
+  // Debian without locales has none of these; the test then checks less but still passes.
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"})
     if (std::setlocale(LC_ALL, name)) break;
   EXPECT_EQ(parseNumber("1.5"), 1.5);
@@ -29,7 +29,7 @@ TEST(Numbers, DoNotDependOnTheLocale) {
   std::setlocale(LC_ALL, before.c_str());
 }
 
-TEST(Numbers, ComeBackBitForBit) {
+TEST(Numbers, ReadBackBitForBit) {
   std::mt19937_64 random(11);
   for (int i = 0; i < 5000; ++i) {
     double value;
@@ -50,12 +50,12 @@ TEST(Lengths, TakeUnits) {
   EXPECT_DOUBLE_EQ(parseLength("0.25"), 0.25);
 }
 
-TEST(Lengths, RefuseWhatIsNone) {
+TEST(Lengths, RejectOtherTexts) {
   for (const char* text : {"", "mm", "1.5ft", "1,5mm", "nan", "infmm", "m", "1 2mm"})
     EXPECT_THROW(parseLength(text), Error) << text;
 }
 
-TEST(Numbers, ReadWellForPeople) {
+TEST(Numbers, AreReadable) {
   EXPECT_EQ(formatBytes(0), "0 B");
   EXPECT_EQ(formatBytes(999), "999 B");
   EXPECT_EQ(formatBytes(12.3e6), "12.3 MB");

@@ -1,4 +1,4 @@
-// What is written where, what a file is, and what is gone when the program is ended.
+// Output targets, kinds of files, and removal of partial output at the end of the program.
 #include "core/output_target.h"
 
 #include <chrono>
@@ -35,7 +35,7 @@ class OutputTargets : public testing::Test {
   fs::path folder;
 };
 
-TEST_F(OutputTargets, LinksLeadToTheirEnd) {
+TEST_F(OutputTargets, LinksAreFollowedToTheirTarget) {
   const std::string end = write("end", "");
   fs::create_symlink("end", folder / "one");
   fs::create_symlink(folder / "one", folder / "two");
@@ -49,7 +49,7 @@ TEST_F(OutputTargets, LinksLeadToTheirEnd) {
   EXPECT_FALSE(pathExists(folder / "none"));
 }
 
-TEST_F(OutputTargets, StreamsAreThoseThatTheProgramWasGiven) {
+TEST_F(OutputTargets, StreamsAreThoseOfTheProcess) {
   const int fd = open((folder / "stream").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   ASSERT_EQ(::write(fd, "before ", 7), 7);
   const OutputTarget target = outputTarget("/dev/fd/" + std::to_string(fd));
@@ -63,7 +63,7 @@ TEST_F(OutputTargets, StreamsAreThoseThatTheProgramWasGiven) {
   EXPECT_THROW(outputTarget("/dev/fd/999"), FileError);
 }
 
-TEST_F(OutputTargets, FilesAreKnownByTheirContent) {
+TEST_F(OutputTargets, FilesAreRecognisedByTheirContent) {
   using enum FileKind;
   const std::pair<const char*, FileKind> cases[] = {
       {"", empty},
@@ -98,20 +98,20 @@ TEST_F(OutputTargets, FilesAreKnownByTheirContent) {
   EXPECT_NO_THROW(requireSameKind(folder / "none", table));
 }
 
-TEST_F(OutputTargets, WhatIsUnfinishedIsGoneWhenTheProgramIsEnded) {
+TEST_F(OutputTargets, UnfinishedOutputIsRemovedIfTheProgramIsTerminated) {
   const pid_t child = fork();
   if (child == 0) {
-    const bool earlier = anyFinished(); // by another test
+    const bool earlier = hasCompleteOutput(); // from another test
     AtomicFile file(folder / "half.csv");
     file.append("half");
     StagedFolder staged(folder / "made", "a");
     writeFileAtomically(staged.path() / "a", "a");
-    if (anyFinished() != earlier) _exit(2); // of a folder that is not whole
+    if (hasCompleteOutput() != earlier) _exit(2); // the folder is not complete
     NewFolder kept(folder / "kept", "index");
     makeFolder(folder / "kept");
     kept.keep();
     writeFileAtomically(folder / "whole.csv", "whole");
-    if (!anyFinished()) _exit(3);
+    if (!hasCompleteOutput()) _exit(3);
     removeUnfinished();
     _exit(0);
   }
@@ -125,7 +125,7 @@ TEST_F(OutputTargets, WhatIsUnfinishedIsGoneWhenTheProgramIsEnded) {
   EXPECT_EQ(names, (std::vector<std::string>{"kept", "whole.csv"}));
 }
 
-TEST_F(OutputTargets, AStagedFolderComesWholeOrNotAtAll) {
+TEST_F(OutputTargets, StagedFolderAppearsCompleteOrNotAtAll) {
   const fs::path out = folder / "out";
   {
     StagedFolder staged(out, "last");
@@ -166,7 +166,7 @@ TEST_F(OutputTargets, AStagedFolderComesWholeOrNotAtAll) {
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(out), {}), 4);
 }
 
-TEST_F(OutputTargets, ANameThatEndsAsAnotherKindDoesIsRefused) {
+TEST_F(OutputTargets, NameWithTheEndingOfAnotherKindIsRejected) {
   EXPECT_THROW(requireSameKind(folder / "new.csv", FileKind::json), FileError);
   EXPECT_THROW(requireSameKind(folder / "new.OBJ", FileKind::table), FileError);
   EXPECT_NO_THROW(requireSameKind(folder / "new.json", FileKind::json));
@@ -174,14 +174,14 @@ TEST_F(OutputTargets, ANameThatEndsAsAnotherKindDoesIsRefused) {
   EXPECT_NO_THROW(requireSameKind(folder / "new", FileKind::table));
 }
 
-// What cannot be looked into for want of a descriptor may be anything.
-TEST_F(OutputTargets, AFileThatCannotBeOpenedForNowIsNotReplaced) {
+// A file that cannot be opened because descriptors ran out may be of any kind.
+TEST_F(OutputTargets, FileThatCannotBeOpenedIsNotReplaced) {
   const std::string mesh = write("g.obj", "v 1 2 3\n");
   rlimit usual{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &usual), 0);
   std::string said;
   try {
-    // Back before the handler runs: a sanitizer's own checks of an object need a descriptor.
+    // The limit is restored before the handler runs: the checks of a sanitizer need a descriptor.
     struct NoDescriptors {
       rlimit usual;
       ~NoDescriptors() { setrlimit(RLIMIT_NOFILE, &usual); }
@@ -196,8 +196,8 @@ TEST_F(OutputTargets, AFileThatCannotBeOpenedForNowIsNotReplaced) {
   EXPECT_NE(said.find("Too many open files"), std::string::npos) << said;
 }
 
-// Two programs begin the same new folder; the one that fails must not take the other's work along.
-TEST_F(OutputTargets, WhatAnotherFinishedInTheSameNewFolderStays) {
+// Two programs write the same new folder; the one that fails must not remove the other's files.
+TEST_F(OutputTargets, CompleteOutputOfAnotherWriterInTheSameNewFolderIsKept) {
   const fs::path shared = folder / "shared";
   {
     const NewFolder first(shared, "index");
@@ -220,11 +220,11 @@ TEST_F(OutputTargets, WhatAnotherFinishedInTheSameNewFolderStays) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2) << "nothing hidden is left";
 }
 
-TEST_F(OutputTargets, AnIndexThatIsALinkStaysOne) {
+TEST_F(OutputTargets, IndexFileStaysALink) {
   const fs::path out = folder / "out";
   fs::create_directory(out);
   fs::create_symlink(folder / "elsewhere", out / "last");
-  for (const char* text : {"one", "two"}) { // to nothing, then to a file
+  for (const char* text : {"one", "two"}) { // a link to nothing, then to a file
     StagedFolder staged(out, "last");
     writeFileAtomically(staged.path() / "last", text);
     staged.commit();
@@ -241,9 +241,9 @@ class Pipes : public OutputTargets {
   static constexpr std::chrono::milliseconds kShort{60}, kLong{20000};
 };
 
-TEST_F(Pipes, ThatNobodyWritesAreAnErrorAndNoWait) {
+TEST_F(Pipes, FailAtOnceWithoutAWriter) {
   EXPECT_THROW(openToRead(pipe, kShort), FileError);
-  // One that may not be written, by whom it belongs to: nobody can let a waiting reader go.
+  // If the pipe's owner may not write it, no process can release a waiting reader.
   ASSERT_EQ(chmod(pipe.c_str(), 0444), 0);
   ASSERT_EQ(chmod(folder.c_str(), 0755), 0);
   const pid_t child = fork();
@@ -262,12 +262,12 @@ TEST_F(Pipes, ThatNobodyWritesAreAnErrorAndNoWait) {
   EXPECT_EQ(status, 0);
 }
 
-TEST_F(Pipes, AreReadOnceSomebodyWritesAndMayBeSilentFirst) {
+TEST_F(Pipes, AreReadOnceAWriterOpensThemAndMayBeSilentFirst) {
   const pid_t child = fork();
   if (child == 0) {
     alarm(20);
     Descriptor writer(openRetrying(pipe.c_str(), O_WRONLY)); // waits for the reader
-    usleep(100000);                                          // longer than it would wait for us
+    usleep(100000);                                          // silent at first
     _exit(writeAll(writer.get(), "late") ? 0 : 1);
   }
   const Descriptor reader(openToRead(pipe, kLong));
@@ -277,16 +277,16 @@ TEST_F(Pipes, AreReadOnceSomebodyWritesAndMayBeSilentFirst) {
   EXPECT_EQ(status, 0);
 }
 
-TEST_F(Pipes, ThatAWriterLeftAreAtTheirEnd) {
+TEST_F(Pipes, EndIfTheWriterCloses) {
   const Descriptor held(openRetrying(pipe.c_str(), O_RDONLY | O_NONBLOCK));
   Descriptor writer(openRetrying(pipe.c_str(), O_WRONLY));
   ASSERT_TRUE(writeAll(writer.get(), "all"));
   writer.close();
-  const Descriptor reader(openToRead(pipe, kLong)); // the bytes are there, their writer is not
+  const Descriptor reader(openToRead(pipe, kLong)); // the bytes remain, the writer is gone
   EXPECT_EQ(readAll(reader.get(), "pipe"), "all");
 }
 
-TEST(Utf8, TakesAnyLanguageAndNoBrokenBytes) {
+TEST(Utf8, AcceptsAnyLanguageAndNoInvalidBytes) {
   for (const char* good : {"", "cup", "Gef\xc3\xa4\xc3\x9f", "\xe6\x9d\xaf", "\xf0\x9f\x8f\xba"})
     EXPECT_TRUE(isUtf8(good)) << good;
   for (const char* bad : {"\xc3", "\xa4", "\xc0\xaf", "\xed\xa0\x80", "\xf5\x80\x80\x80",

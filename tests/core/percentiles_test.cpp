@@ -9,7 +9,7 @@
 namespace patina {
 namespace {
 
-TEST(Percentiles, AreNearestRankWhateverTheOrder) {
+TEST(Percentiles, AreNearestRankInAnyOrder) {
   std::vector<double> values(1000);
   std::iota(values.rbegin(), values.rend(), 1);
   const Percentiles p = percentiles(values);
@@ -19,13 +19,13 @@ TEST(Percentiles, AreNearestRankWhateverTheOrder) {
   EXPECT_EQ(p.max, 1000);
 }
 
-TEST(Percentiles, OfOneValueAreThatValueAndOfNoneZeros) {
+TEST(Percentiles, EqualASingleValueAndAreZeroWithoutValues) {
   EXPECT_EQ(percentiles({7}).p50, 7);
   EXPECT_EQ(percentiles({7}).p999, 7);
   EXPECT_EQ(percentiles({}).max, 0);
 }
 
-TEST(Percentiles, OfCountsAreThoseOfTheList) {
+TEST(Percentiles, CountsGiveThePercentilesOfTheList) {
   std::mt19937 random(5);
   std::map<std::uint32_t, std::size_t> counts;
   std::vector<double> values;

@@ -8,7 +8,7 @@ namespace {
 
 struct Item {
   std::uint64_t number = 0;
-  std::uint64_t check = 0; // ~number: a torn item shows
+  std::uint64_t check = 0; // ~number reveals a torn item
 };
 
 TEST(Ring, RoundsCapacityUpAndDropsTheNewest) {

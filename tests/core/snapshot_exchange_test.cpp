@@ -18,7 +18,7 @@ struct Value {
   int twice;
 };
 
-TEST(SnapshotExchange, GivesNothingBeforeTheFirstAndThenTheNewest) {
+TEST(SnapshotExchange, ReturnsNothingBeforeTheFirstAndThenTheNewest) {
   SnapshotExchange<Value> exchange;
   EXPECT_EQ(exchange.latest(), nullptr);
   exchange.publish(std::make_shared<const Value>(1));
@@ -27,7 +27,7 @@ TEST(SnapshotExchange, GivesNothingBeforeTheFirstAndThenTheNewest) {
   EXPECT_EQ(exchange.latest()->number, 2);
 }
 
-TEST(SnapshotExchange, KeepsWhatTheReaderHoldsAndFreesTheRest) {
+TEST(SnapshotExchange, KeepsTheValueOfTheReaderAndFreesTheRest) {
   {
     SnapshotExchange<Value> exchange;
     exchange.publish(std::make_shared<const Value>(1));
@@ -42,7 +42,7 @@ TEST(SnapshotExchange, KeepsWhatTheReaderHoldsAndFreesTheRest) {
   EXPECT_EQ(Value::alive, 0);
 }
 
-TEST(SnapshotExchange, SharedValuesOutliveTheExchangesInterest) {
+TEST(SnapshotExchange, SharedValuesOutliveTheExchange) {
   const auto mine = std::make_shared<const Value>(5);
   {
     SnapshotExchange<Value> exchange;
@@ -52,7 +52,7 @@ TEST(SnapshotExchange, SharedValuesOutliveTheExchangesInterest) {
   EXPECT_EQ(mine->number, 5);
 }
 
-TEST(SnapshotExchange, AReaderNeverSeesAFreedOrOlderValue) {
+TEST(SnapshotExchange, ReaderNeverSeesAFreedOrOlderValue) {
   constexpr int kCount = 20000;
   {
     SnapshotExchange<Value> exchange;
@@ -80,22 +80,22 @@ TEST(SnapshotExchange, AReaderNeverSeesAFreedOrOlderValue) {
   EXPECT_EQ(Value::alive, 0);
 }
 
-TEST(SnapshotExchange, AHeldValueOutlivesTheNextOnes) {
+TEST(SnapshotExchange, ProtectedValueOutlivesLaterValues) {
   SnapshotExchange<Value> exchange;
   exchange.publish(std::make_shared<const Value>(1));
   const Value* held = exchange.latest();
-  exchange.hold(held);
+  exchange.protect(held);
   for (int i = 2; i < 10; ++i) {
     exchange.publish(std::make_shared<const Value>(i));
     EXPECT_EQ(exchange.latest()->number, i);
   }
   EXPECT_EQ(held->number, 1);
-  exchange.hold(nullptr);
+  exchange.protect(nullptr);
   EXPECT_EQ(exchange.collect(), 1u);
 }
 
-// As a cross-fade reads: the old value is held while the next one is in use.
-TEST(SnapshotExchange, AReaderOfTwoValuesNeverSeesAFreedOne) {
+// A cross-fade protects the old value while it uses the next one.
+TEST(SnapshotExchange, ReaderOfTwoValuesNeverSeesAFreedOne) {
   {
     SnapshotExchange<Value> exchange;
     std::atomic<bool> done{false};
@@ -103,7 +103,7 @@ TEST(SnapshotExchange, AReaderOfTwoValuesNeverSeesAFreedOne) {
     std::thread reader([&] {
       const Value* old = nullptr;
       while (!done) {
-        exchange.hold(old);
+        exchange.protect(old);
         const Value* next = exchange.latest();
         for (const Value* value : {old, next})
           if (value && value->twice != 2 * value->number) ++faults;

@@ -27,7 +27,7 @@ void write(const fs::path& folder, const std::string& text) {
   staged.commit();
 }
 
-// As left by a run that was killed between its files: none tells any more what it is.
+// State left by a run that was killed between its files: the target folder has no index file.
 class HalfWritten : public testing::Test {
  protected:
   void leave(pid_t process) {
@@ -43,19 +43,19 @@ class HalfWritten : public testing::Test {
   fs::path left_;
 };
 
-TEST_F(HalfWritten, IsReplacedAndClearedAwayByTheNextRun) {
+TEST_F(HalfWritten, IsReplacedAndRemovedByTheNextRun) {
   leave(endedProcess());
-  EXPECT_TRUE(wasAbandoned(folder_));
+  EXPECT_TRUE(isInterruptedWrite(folder_));
   write(folder_, "new");
   EXPECT_EQ(readFile(folder_ / "first.txt"), "new");
   EXPECT_EQ(readFile(folder_ / "last.txt"), "new");
   EXPECT_FALSE(fs::exists(left_));
-  EXPECT_FALSE(wasAbandoned(folder_));
+  EXPECT_FALSE(isInterruptedWrite(folder_));
 }
 
-TEST_F(HalfWritten, IsLeftAloneWhileItsRunIsAlive) {
+TEST_F(HalfWritten, IsKeptWhileItsProcessRuns) {
   leave(getppid());
-  EXPECT_FALSE(wasAbandoned(folder_));
+  EXPECT_FALSE(isInterruptedWrite(folder_));
   EXPECT_THROW(write(folder_, "new"), FileError);
   EXPECT_EQ(readFile(folder_ / "first.txt"), "old");
   EXPECT_TRUE(fs::exists(left_));

@@ -27,7 +27,7 @@ TEST(Units, AreParsedInTheirUsualSpellings) {
   EXPECT_EQ(inSi("\xC2\xB5m"), "0.000001 1 0 0 0");
 }
 
-TEST(Units, AnUnknownSymbolIsNoUnit) {
+TEST(Units, UnknownSymbolIsNoUnit) {
   for (const char* text : {"furlong", "mmm", "m/", "/s", "m//s", "m^", "m^0", "m^9", "m^x", "M",
                            "S", "m/(s)", "^2", "*", "m**"})
     EXPECT_EQ(inSi(text), "none") << text;

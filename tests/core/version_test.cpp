@@ -1,4 +1,4 @@
-// What the program says of itself, and the script that finds out the commit.
+// The version text of the program, and the script that finds the commit.
 #include "core/version.h"
 
 #include <gtest/gtest.h>
@@ -39,11 +39,11 @@ class CommitOf : public testing::Test {
     shell("git init -q && echo one > file && git add file && git -c user.name=a "
           "-c user.email=a commit -q -m one");
   }
-  // What the header says after the script has run.
+  // Returns the header written by the script.
   std::string header(const std::string& options = "") const {
     const std::string script = test::sourceFolder() / "modules/core/version.cmake";
-    shell("cmake -D 'SOURCE=" + source().string() +
-          "' -D VERSION=1.2.3 -D 'OUTPUT=" + output().string() + "' " + options + " -P '" + script + "'");
+    shell("cmake -D 'SOURCE=" + source().string() + "' -D VERSION=1.2.3 -D 'OUTPUT=" +
+          output().string() + "' " + options + " -P '" + script + "'");
     return readFile(output());
   }
   static std::string saying(const std::string& commit) {
@@ -57,11 +57,11 @@ class CommitOf : public testing::Test {
   fs::path folder_ = test::freshFolder("version");
 };
 
-TEST_F(CommitOf, AFolderWithoutGitIsUnknown) {
+TEST_F(CommitOf, FolderWithoutGitIsUnknown) {
   EXPECT_EQ(header(), saying("unknown"));
 }
 
-TEST_F(CommitOf, ARepositoryIsItsHeadWithAMarkForEdits) {
+TEST_F(CommitOf, RepositoryHasItsHeadWithAMarkForEdits) {
   commitAFile();
   const std::string clean = header();
   EXPECT_TRUE(std::regex_search(clean, std::regex("COMMIT \"[0-9a-f]{12}\"\n"))) << clean;
@@ -72,7 +72,7 @@ TEST_F(CommitOf, ARepositoryIsItsHeadWithAMarkForEdits) {
   EXPECT_TRUE(std::regex_search(header(), std::regex("[0-9a-f]{12}-dirty\"\n")));
 }
 
-TEST_F(CommitOf, AWorktreeIsItsOwnHead) {
+TEST_F(CommitOf, WorktreeHasItsOwnHead) {
   shell(
       "mkdir ../main && cd ../main && git init -q && echo one > file && git add file && git -c "
       "user.name=a -c user.email=a commit -q -m one && git worktree add -q --detach '../a source'");
@@ -82,7 +82,7 @@ TEST_F(CommitOf, AWorktreeIsItsOwnHead) {
   EXPECT_NE(header(), before);
 }
 
-TEST_F(CommitOf, AnothersRepositoryIsReadToo) {
+TEST_F(CommitOf, RepositoryOfAnotherUserIsRead) {
   if (::geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
   commitAFile();
   const std::string own = header();
@@ -90,7 +90,7 @@ TEST_F(CommitOf, AnothersRepositoryIsReadToo) {
   EXPECT_EQ(header(), own);
 }
 
-TEST_F(CommitOf, AClonesCommitIsReadWhereGitIsNotInstalled) {
+TEST_F(CommitOf, CommitOfACloneIsReadWithoutGit) {
   commitAFile();
   const std::string with_git = header();
   const std::string without = "-D GIT=/nowhere/git";
@@ -101,9 +101,9 @@ TEST_F(CommitOf, AClonesCommitIsReadWhereGitIsNotInstalled) {
   EXPECT_EQ(header(without), with_git);
 }
 
-TEST_F(CommitOf, AnArchiveIsWhatGitWroteIntoIt) {
+TEST_F(CommitOf, ArchiveHasTheCommitWrittenByGit) {
   fs::copy_file(test::sourceFolder() / ".gitattributes", source() / ".gitattributes");
-  // As in a checkout whose .git is gone.
+  // A checkout may have lost its .git.
   writeFileAtomically(source() / ".git_archival.txt", "commit: $Format:%H$\n");
   EXPECT_EQ(header(), saying("unknown"));
   shell("git init -q && git add . && git -c user.name=a -c user.email=a commit -q -m one");

@@ -30,7 +30,7 @@ TEST(FittedOrder, IsExactForAPowerLaw) {
   EXPECT_NEAR(fittedOrder(h, error), 2.5, 1e-12);
 }
 
-TEST(FittedOrder, RefusesWhatHasNoSlope) {
+TEST(FittedOrder, RejectsDataWithoutASlope) {
   EXPECT_THROW(fittedOrder({0.1}, {1}), std::invalid_argument);
   EXPECT_THROW(fittedOrder({0.1, 0.2}, {1}), std::invalid_argument);
   EXPECT_THROW(fittedOrder({0.1, 0.1}, {1, 2}), std::invalid_argument);
@@ -38,7 +38,7 @@ TEST(FittedOrder, RefusesWhatHasNoSlope) {
   EXPECT_THROW(fittedOrder({0.1, 0.2}, {NAN, 2}), std::invalid_argument);
 }
 
-TEST(WorkPrecision, JsonHasTheContractsKeys) {
+TEST(WorkPrecision, JsonHasTheDocumentedKeys) {
   const Json json = toJson(example());
   const Json& row = json.at("rows").asArray().at(1);
   EXPECT_EQ(row.at("sampler").asString(), "high");
@@ -54,7 +54,7 @@ TEST(WorkPrecision, JsonHasTheContractsKeys) {
 TEST(WorkPrecision, CsvHoldsEveryRowInFullPrecision) {
   WorkPrecisionTable table = example();
   table.rows[0].error = 1.0 / 3;
-  table.rows[0].knobs[0].second = Json("a, \"b\"");
+  table.rows[0].settings[0].second = Json("a, \"b\"");
   const std::filesystem::path path =
       std::filesystem::path(testing::TempDir()) / "patina_work_precision_test.csv";
   writeCsv(path, table);
@@ -66,7 +66,7 @@ TEST(WorkPrecision, CsvHoldsEveryRowInFullPrecision) {
   EXPECT_NE(text.find("," + versionText() + "\n"), std::string::npos) << text;
 }
 
-TEST(WorkPrecision, TheMachineIsDescribed) {
+TEST(WorkPrecision, DescribesTheMachine) {
   const Json machine = machineDescription();
   for (const char* key : {"processor", "compiler", "flags", "policy", "date"})
     EXPECT_NE(machine.at(key).asString(), "") << key;

@@ -1,4 +1,4 @@
-// The whole chain on its embedded scan, and that its figures would tell if it were broken.
+// The whole chain on its embedded scan; its figures must reveal a fault.
 #include "demo/demo_report.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace patina {
 namespace {
 
-TEST(Demo, TakesAScanToAFeelWithinItsLimits) {
+TEST(Demo, ReproducesAScanWithinItsLimits) {
   const std::filesystem::path folder = test::freshFolder("demo");
   Demo demo(folder, 1);
   Progress progress;
@@ -23,15 +23,15 @@ TEST(Demo, TakesAScanToAFeelWithinItsLimits) {
   EXPECT_EQ(figures.size(), 1 + 7 * demo.object.materials.size());
   for (const DemoFigure& figure : figures) {
     std::printf("%s %s: %.4g of %.4g %s\n", figure.what.c_str(), figure.of.c_str(), figure.value,
-                figure.most, figure.unit.c_str());
-    EXPECT_TRUE(figure.holds()) << figure.what << " " << figure.of;
+                figure.limit, figure.unit.c_str());
+    EXPECT_TRUE(figure.passes()) << figure.what << " " << figure.of;
   }
-  // What it leaves opens again, with paint and textures.
+  // The output opens again, with paint and textures.
   const Scene scene = loadWorkspace(demo.folder / "workspace");
   ASSERT_TRUE(scene.objects.at(0).paint);
   EXPECT_EQ(scene.objects[0].paint->textures->library.size(), 3u);
   EXPECT_TRUE(scene.objects[0].paint->color && scene.objects[0].paint->material);
-  double stiffness = 0; // of what was scanned, on the mean: no rim of a texture throws the tip off
+  double stiffness = 0; // mean over the textures, as no boundary throws the tip off
   for (const auto& [number, texture] : scene.objects[0].paint->textures->library)
     stiffness += texture->stiffness / 3;
   EXPECT_NEAR(scene.haptics.stiffness, stiffness, 0.51);
@@ -61,7 +61,8 @@ TEST(Demo, TakesAScanToAFeelWithinItsLimits) {
   }
   areAlike("textured.obj", "scan-ribs/textured.obj");
   EXPECT_EQ(loadWorkspace(folder / "again").objects.at(0).paint->textures->library.size(), 3U);
-  // The last step again, from the files of those before it; of other paths the place is found anew.
+  // Repeats the last step from the files of those before it; for other paths the pose is fitted
+  // again.
   EXPECT_THROW(runScan(again, progress), FileError) << "the workspace is there";
   std::filesystem::rename(folder / "scan-ribs" / "texture.json", folder / "first.json");
   again.workspace = folder / "once-more";
@@ -71,7 +72,7 @@ TEST(Demo, TakesAScanToAFeelWithinItsLimits) {
   again.workspace = folder / "without";
   EXPECT_EQ(runScan(again, progress).steps.size(), 3U + 3);
 
-  // Felt again without its textures, the figures fail.
+  // The figures must fail for the same scan if its textures are absent.
   Scene bare = demo.compiled->scene;
   auto paint = std::make_shared<ObjectPaint>(*bare.objects[0].paint);
   paint->textures.reset();
@@ -79,7 +80,8 @@ TEST(Demo, TakesAScanToAFeelWithinItsLimits) {
   demo.compiled = compile(bare, progress);
   for (DemoTexture& texture : demo.textures) texture.felt.clear();
   demoSteps().back().run(demo, progress);
-  for (const DemoTexture& texture : demo.textures) EXPECT_GT(texture.felt_error.variation, 0.9);
+  for (const DemoTexture& texture : demo.textures)
+    EXPECT_GT(texture.force_error.texture_error, 0.9);
   EXPECT_FALSE(demoJson(demo).at("holds").asBool());
   std::filesystem::remove_all(folder);
 }

@@ -1,4 +1,4 @@
-#include "demo/spectrum_error.h"
+#include "demo/truth_errors.h"
 
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
-// Of a length that the wave need not fit whole.
+// The length need not be a multiple of the wavelength.
 std::vector<ProfilePoint> waves(double length, double height, double more = 0) {
   std::vector<ProfilePoint> points;
   for (int i = 0; i <= 1000; ++i) {
@@ -46,20 +46,20 @@ TEST(SpectrumError, IsInDecibelsOfTheWorstHarmonic) {
   // 1.5/m: of waves of 5 mm above 38 um, of 2 mm above 7 um.
   const SpectrumError error = between(waves(5e-3, 1e-4, 5.2e-5), truth, 1.5);
   EXPECT_NEAR(error.decibels, 20 * std::log10(1.3), 0.15);
-  EXPECT_GE(error.compared, 2u);
+  EXPECT_GE(error.harmonic_count, 2u);
   const SpectrumError highest = between(waves(5e-3, 1e-4, 5.2e-5), truth, 1e3);
-  EXPECT_EQ(highest.compared, 1u) << "the highest in any case";
+  EXPECT_EQ(highest.harmonic_count, 1u) << "the highest in any case";
   EXPECT_LT(highest.decibels, 0.1);
 }
 
-TEST(SpectrumError, SeesAWrongWavelengthAndAnAbsentWave) {
+TEST(SpectrumError, DetectsAWrongWavelengthAndAMissingWave) {
   const SpectrumError error = between(waves(4.9e-3, 1e-4), waves(5e-3, 1e-4), 1);
   EXPECT_NEAR(error.wavelength / error.true_wavelength, 0.98, 2e-3);
   EXPECT_GT(between(waves(3e-3, 1e-4), waves(5e-3, 1e-4), 1).decibels, 20);
 }
 
 // The 25th of its harmonics is then a quarter of a harmonic away.
-TEST(SpectrumError, CountsAStretchOfTheWholeAsOneOfTheWavelengthAlone) {
+TEST(SpectrumError, CountsAUniformStretchAsAnErrorOfTheWavelengthOnly) {
   const auto truth = waves(5e-3, 1e-4, 4e-5);
   for (const double stretch : {0.991, 1.009}) {
     const SpectrumError error = between(waves(stretch * 5e-3, 1e-4, 4e-5), truth, 1.5);
@@ -70,7 +70,7 @@ TEST(SpectrumError, CountsAStretchOfTheWholeAsOneOfTheWavelengthAlone) {
   EXPECT_GT(between(waves(0.96 * 5e-3, 1e-4, 4e-5), truth, 1.5).decibels, 2) << "another wave";
 }
 
-TEST(SpectrumError, IsOfLinesAndHeights) {
+TEST(SpectrumError, AcceptsLinesAndHeights) {
   const FourierTexture line = fitTexture(waves(5e-3, 1e-4), {}).texture;
   EXPECT_THROW(spectrumError(crossCorrelation(line, line), waves(5e-3, 1e-4), 8e-3, 1),
                std::invalid_argument);

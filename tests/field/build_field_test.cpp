@@ -1,6 +1,6 @@
-// A built field against brute force over all triangles: T-K01e, T-K02, and what a build must do
-// with bad input, cancel and threads.
-#include "field/build/build_field.h"
+// A built field against brute force over all triangles (T-K01e, T-K02); bad input, cancelling and
+// threads.
+#include "field/construction/build_field.h"
 
 #include <cmath>
 #include <limits>
@@ -25,7 +25,7 @@ BuiltField build(const TriangleMesh& mesh, int resolution, double band = 3) {
   FieldSpec spec;
   spec.resolution = resolution;
   spec.band = band;
-  spec.sides = OpenSides::automatic_two; // its distances are those to the mesh alone
+  spec.sides = OpenSides::automatic_two; // its distances are those of the mesh alone
   Progress progress;
   return buildField(mesh, spec, progress);
 }
@@ -64,7 +64,7 @@ void expectExact(const TriangleMesh& mesh, const BuiltField& built, int stride =
         const double phi = std::abs(static_cast<double>(test::phiAt(field, i, j, k))) * h;
         const std::int32_t face = field.faceAt(i, j, k);
         if (truth > (field.band + 1e-4) * h) {
-          ASSERT_EQ(std::abs(test::phiAt(field, i, j, k)), kBeyondBand)
+          ASSERT_EQ(std::abs(test::phiAt(field, i, j, k)), kBackground)
               << i << ' ' << j << ' ' << k;
           ASSERT_EQ(face, -1);
         } else if (truth <= field.band * h) {
@@ -115,7 +115,7 @@ TEST(BuildField, IsExactOnDoubledAndOverlappingMeshes) {
   expectExact(overlap, build(overlap, 24));
 }
 
-// The short form of the 400^3 grid: random nodes only.
+// Short form of the 400^3 grid with random nodes only.
 TEST(BuildField, IsExactInALargeGrid) {
   const TriangleMesh mesh = box(Vec3(1, 0.02, 0.8)); // triangles of 400 voxels
   const BuiltField built = build(mesh, 400);
@@ -139,7 +139,7 @@ TEST(BuildField, IsExactInALargeGrid) {
 
 TEST(BuildField, IsTheSameFarFromTheOrigin) {
   const TriangleMesh mesh = torus(0.05, 0.02, 20, 10);
-  // A power of two keeps the vertices' low bits alike.
+  // Adding a power of two keeps the vertices' low bits.
   const TriangleMesh away = moved(mesh, Vec3::Constant(std::exp2(17)));
   const BuiltField far = build(away, 24);
   expectExact(away, far);
@@ -164,7 +164,7 @@ TEST(BuildField, StoresOnlyBlocksWithANodeInTheBand) {
     const auto& at = field.block_at[slot];
     EXPECT_EQ(field.slotOf(at[0], at[1], at[2]), static_cast<std::int32_t>(slot));
   }
-  EXPECT_LT(field.blockCount(), field.top.size() / 2);
+  EXPECT_LT(field.blockCount(), field.block_index.size() / 2);
 }
 
 // Lipschitz (T-K01e): neighbours differ by no more than their distance.
@@ -175,7 +175,7 @@ TEST(BuildField, NeverChangesFasterThanDistance) {
     for (int j = 0; j < field.grid.nodes[1]; ++j)
       for (int i = 0; i + 1 < field.grid.nodes[0]; ++i) {
         const float a = test::phiAt(field, i, j, k), b = test::phiAt(field, i + 1, j, k);
-        if (std::abs(a) >= kBeyondBand || std::abs(b) >= kBeyondBand) continue;
+        if (std::abs(a) >= kBackground || std::abs(b) >= kBackground) continue;
         EXPECT_LE(std::abs(a - b), 1 + 1e-5f);
       }
 }
@@ -210,7 +210,7 @@ TEST(BuildField, IsTheSameForAnyNumberOfThreads) {
   const BuiltField many = build(mesh, 60);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const BuiltField single = build(mesh, 60);
-  ASSERT_EQ(many.field->top, single.field->top);
+  ASSERT_EQ(many.field->block_index, single.field->block_index);
   for (std::size_t slot = 0; slot < many.field->blockCount(); ++slot) {
     EXPECT_EQ(many.field->distance[slot]->phi(), single.field->distance[slot]->phi());
     for (std::size_t n = 0; n < kBlockNodes; ++n)
@@ -218,7 +218,7 @@ TEST(BuildField, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(BuildField, DropsAndCountsTrianglesThatAreNone) {
+TEST(BuildField, DropsAndCountsInvalidTriangles) {
   const TriangleMesh sphere = icosphere(1, 4);
   TriangleMesh broken;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -265,7 +265,7 @@ TEST(BuildField, StopsWhenCancelled) {
   }
 }
 
-TEST(BuildField, TellsEachStepInItsOrder) {
+TEST(BuildField, ReportsEachStepInOrder) {
   const auto steps = [](const TriangleMesh& mesh, bool cancelled) {
     std::vector<std::string> told;
     double first = -1, last = -1;
@@ -293,7 +293,7 @@ TEST(BuildField, TellsEachStepInItsOrder) {
   EXPECT_EQ(steps(icosphere(1, 8), true), Steps{});
 }
 
-TEST(BuildField, ReportsWhatItDid) {
+TEST(BuildField, ReportsItsFigures) {
   const BuiltField built = build(icosphere(1, 10), 60, 8);
   EXPECT_EQ(built.report.blocks, built.field->blockCount());
   EXPECT_EQ(built.report.bytes, built.field->bytes());

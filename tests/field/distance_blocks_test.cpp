@@ -1,5 +1,5 @@
-// Coarse nodes where several feet are as near.
-#include "field/build/distance_blocks.h"
+// Coarse nodes with several equally near closest points.
+#include "field/construction/distance_blocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@
 namespace patina {
 namespace {
 
-// A box half as deep along `axis`, its middle `off` voxels from a block's corner. Unsigned, as
-// before the signs.
+// A box half as deep along `axis`, its centre `off` voxels from a block's corner. Distances have no
+// signs yet.
 CoarseNode middleNode(const TriangleMesh& box, int axis, double off) {
   FieldGrid grid;
   grid.voxel = 1;
@@ -33,8 +33,8 @@ Vec3 flat(int axis) {
   return Vec3::Constant(24) - 12 * Vec3::Unit(axis);
 }
 
-// Which face comes first in the mesh, and which of the two is nearer by a hair, is no matter.
-TEST(CoarseNodes, BetweenTwoFacesHaveNoDirection) {
+// The order of the faces and a tiny difference in distance must not matter.
+TEST(CoarseNodes, HaveNoDirectionMidwayBetweenTwoFaces) {
   const auto expectNone = [](const TriangleMesh& box, int axis, double off) {
     const CoarseNode node = middleNode(box, axis, off);
     EXPECT_NEAR(node.phi, 6 - std::abs(off), 1e-5);
@@ -49,7 +49,7 @@ TEST(CoarseNodes, BetweenTwoFacesHaveNoDirection) {
   }
 }
 
-TEST(CoarseNodes, NearerToOneOfTwoFacesPointAwayFromIt) {
+TEST(CoarseNodes, PointAwayFromTheNearerOfTwoFaces) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double off : {-0.3, 0.3}) {
       const CoarseNode node = middleNode(box(flat(axis)), axis, off);
@@ -58,13 +58,13 @@ TEST(CoarseNodes, NearerToOneOfTwoFacesPointAwayFromIt) {
     }
 }
 
-// While it lives, this process may take `bytes` more.
+// Limits this process to `bytes` more memory during its lifetime.
 class Allowance {
  public:
   explicit Allowance(std::size_t bytes) {
     ::getrlimit(RLIMIT_AS, &usual_);
     rlimit less = usual_;
-    less.rlim_cur = 1UL << 40; // some limit, so that what is left of it is known
+    less.rlim_cur = 1UL << 40; // with any limit the remainder is known
     ::setrlimit(RLIMIT_AS, &less);
     std::size_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
@@ -79,8 +79,8 @@ class Allowance {
   rlimit usual_{};
 };
 
-// 6,000 blocks of it are stored, of 35,937 places: 21 MB beside 5.
-TEST(DistanceBlocks, ThatMemoryDoesNotHoldAreRefusedBeforeTheyAreMade) {
+// 6,000 of 35,937 blocks are stored: 21 MB beside 5.
+TEST(DistanceBlocks, AreRejectedBeforeAllocationIfMemoryIsTooSmall) {
   if (test::kSanitized) GTEST_SKIP() << "a sanitizer takes addresses of its own";
   const TriangleMesh mesh = icosphere(120, 4);
   const TriangleTree tree(mesh);
@@ -92,7 +92,7 @@ TEST(DistanceBlocks, ThatMemoryDoesNotHoldAreRefusedBeforeTheyAreMade) {
   const auto blocks = [&] {
     return distanceBlocks(mesh, tree, grid, 3, progress, 0, 1).distance.size();
   };
-  const std::size_t stored = blocks(); // and the threads have their memory
+  const std::size_t stored = blocks(); // also makes the threads allocate their memory
   ASSERT_GT(stored, 4500U);
   std::string cause = "nothing";
   {

@@ -1,4 +1,4 @@
-#include "field/build/edit_field.h"
+#include "field/construction/edit_field.h"
 
 #include <cstring>
 #include <random>
@@ -14,7 +14,7 @@ namespace {
 using namespace test;
 
 bool isStored(float phi) {
-  return std::abs(phi) < kBeyondBand;
+  return std::abs(phi) < kBackground;
 }
 
 // K04, one node at a time.
@@ -31,8 +31,8 @@ float difference(const SurfaceField& field, const std::array<int, 3>& at, std::s
   return isStored(before) ? here - before : 0;
 }
 
-// The mean of the nine differences side by side, where all nodes about are stored and no difference
-// is another slope than the node's own.
+// Mean of the nine parallel differences if all neighbours are stored and no difference belongs to a
+// different slope than the node's own.
 float slope(const SurfaceField& field, const std::array<int, 3>& at, std::size_t axis) {
   const float own = difference(field, at, axis);
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -54,7 +54,7 @@ float slope(const SurfaceField& field, const std::array<int, 3>& at, std::size_t
   return sum;
 }
 
-// A grid of whole blocks, so that test::phiAt() knows every node that is stored.
+// A grid of whole blocks, so that test::phiAt() covers every stored node.
 FieldGrid wholeBlocks() {
   return {Vec3::Constant(-0.04), 1e-3, {80, 80, 80}};
 }
@@ -79,7 +79,7 @@ TEST(SampleLayer, HoldsEachNodesOwnDifferences) {
             central[static_cast<Eigen::Index>(axis)] = difference(*field, at, axis);
             expected[static_cast<Eigen::Index>(axis)] = slope(*field, at, axis);
           }
-          // Beside the centre, where the distance has a crease, a node takes its own side's slope.
+          // The distance has a crease at the centre; a node near it takes its own side's slope.
           const double tolerance =
               isStored(phi) && std::abs(central.squaredNorm() - 1) > 9e-4 ? 0.2 : 2e-6;
           ASSERT_LE((Vec3(node.gx, node.gy, node.gz) - expected).norm(), tolerance);
@@ -103,7 +103,7 @@ bool sameSamples(const SurfaceField& a, const SurfaceField& b) {
   return true;
 }
 
-TEST(RenewSamples, GivesThoseOfTheWholeFieldAndSharesTheRest) {
+TEST(RenewSamples, EqualsTheWholeFieldAndSharesUnchangedBlocks) {
   const auto original = sampledField(sphereDistance(0.025), wholeBlocks(), 4);
   std::mt19937 random(3);
   SurfaceField field = *original;
@@ -115,7 +115,7 @@ TEST(RenewSamples, GivesThoseOfTheWholeFieldAndSharesTheRest) {
     for (float& phi : nodes.phi)
       if (isStored(phi)) phi += 0.25F;
     block = std::make_shared<const DistanceBlock>(nodes);
-    renewSamples(field, std::array{slot}, *original);
+    updateSamples(field, std::array{slot}, *original);
     SurfaceField bare = field;
     bare.sample.clear();
     ASSERT_TRUE(
@@ -129,7 +129,7 @@ TEST(RenewSamples, GivesThoseOfTheWholeFieldAndSharesTheRest) {
   std::vector<std::int32_t> all(field.blockCount());
   for (std::size_t s = 0; s < all.size(); ++s) all[s] = static_cast<std::int32_t>(s);
   field.distance = original->distance;
-  renewSamples(field, all, *original);
+  updateSamples(field, all, *original);
   EXPECT_EQ(field.sample, original->sample);
 }
 

@@ -18,7 +18,7 @@ FaceNodes randomFaces(int different, unsigned seed) {
   return nodes;
 }
 
-TEST(FaceBlock, GivesBackEveryFaceHoweverManyThereAre) {
+TEST(FaceBlock, ReturnsEveryFaceForAnyNumberOfFaces) {
   for (const int different : {1, 2, 40, 255, 256, 257, 300, 100000}) {
     const FaceNodes nodes = randomFaces(different, static_cast<unsigned>(different));
     const FaceBlock block(nodes);
@@ -28,8 +28,8 @@ TEST(FaceBlock, GivesBackEveryFaceHoweverManyThereAre) {
   }
 }
 
-// Every way through a block: a face for each layer of nodes along an axis, for each row, for all.
-TEST(FaceBlock, HoldsFacesThatLieInLayersSmallWhateverTheirAxis) {
+// Blocks of every layout: one face per layer of nodes along an axis, per row, or for all nodes.
+TEST(FaceBlock, StoresLayeredFacesCompactlyAlongAnyAxis) {
   for (const int shift : {0, 3, 6}) {
     FaceNodes nodes;
     for (std::size_t n = 0; n < nodes.face.size(); ++n)

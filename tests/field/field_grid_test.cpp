@@ -15,7 +15,7 @@ FieldSpec spec(int resolution, double band = 8) {
   return {.resolution = resolution, .voxel = std::nullopt, .band = band};
 }
 
-TEST(FieldGrid, HasTheAskedCellsAlongTheLongestSideBandsIncluded) {
+TEST(FieldGrid, HasTheRequestedCellsAlongTheLongestSideIncludingBands) {
   const FieldGrid grid = gridAround(Box3(Vec3(1, 2, 3), Vec3(1.1, 2.05, 3.02)), spec(150));
   EXPECT_EQ(grid.nodes[0], 151);
   EXPECT_NEAR(grid.voxel, 0.1 / 134, 1e-15);
@@ -33,7 +33,7 @@ TEST(FieldGrid, CoversTheBoxGrownByTheBand) {
   }
 }
 
-TEST(FieldGrid, AWidenedBandHoldsTheReachAndNoMoreThanItMust) {
+TEST(FieldGrid, WidenedBandIsTheSmallestThatHoldsTheReach) {
   const Box3 box(Vec3(0, 0, 0), Vec3(0.1, 0.05, 0.02));
   for (const double reach : {0.0, 1e-3, 5e-3, 0.02, 0.2}) {
     for (const bool by_voxel : {false, true}) {
@@ -46,7 +46,7 @@ TEST(FieldGrid, AWidenedBandHoldsTheReachAndNoMoreThanItMust) {
         if (!by_voxel && trial.resolution <= 2 * band + 2) return false;
         return reach / gridAround(box, trial).voxel + 3 <= band + 1e-6;
       };
-      // 0.2 m about a shape of 0.1 m: no band of 150 cells holds that, and gridAround says so.
+      // No band of 150 cells holds 0.2 m around a shape of 0.1 m, and gridAround reports it.
       const bool possible = reach < 0.2 || by_voxel;
       EXPECT_TRUE(!possible || reach == 0 || holds(wide.band)) << reach;
       EXPECT_EQ(wide.resolution, 150);
@@ -77,7 +77,7 @@ TEST(FieldGrid, TakesAVoxelInsteadOfAResolution) {
   EXPECT_EQ(grid.nodeCount(), 19U * 9U * 9U);
 }
 
-TEST(FieldGrid, RefusesImpossibleGridsInOneLine) {
+TEST(FieldGrid, RejectsImpossibleGridsInOneLine) {
   const Box3 box(Vec3::Zero(), Vec3::Ones());
   EXPECT_THROW(gridAround(box, spec(18)), Error);
   EXPECT_NO_THROW(gridAround(box, spec(19)));

@@ -21,7 +21,7 @@ double orderOf(double error_coarse, double error_fine) {
 }
 
 // T-K01a: at a cell's centre the trilinear error on a sphere is h^2/(4 r), outwards always.
-TEST(FieldSampler, TrilinearValueOnASphereIsOffByTheKnownAmount) {
+TEST(FieldSampler, TrilinearErrorOnASphereMatchesTheTheory) {
   const FieldGrid grid = cubeGrid(kSphereRadius, 150);
   const auto field = sampledField(sphereDistance(kSphereRadius), grid);
   const FieldSampler sampler(*field, Sampler::kim);
@@ -104,7 +104,7 @@ Errors errorsOn(const Distance& distance, double half, int resolution, Sampler k
 
 // T-K05a and F1: the blend of nodal gradients is second order in direction, as trilinear is in
 // value; F15: the average with the Taylor blend is third order.
-TEST(FieldSampler, OrdersOnASphereAreThoseOfTheTheory) {
+TEST(FieldSampler, OrdersOnASphereMatchTheTheory) {
   Errors kim[3], high[3];
   for (int level = 0; level < 3; ++level) {
     const int resolution = (48 << level) + 16; // the voxel halves each time
@@ -115,7 +115,7 @@ TEST(FieldSampler, OrdersOnASphereAreThoseOfTheTheory) {
   for (int level = 0; level < 2; ++level) {
     EXPECT_GE(orderOf(kim[level].angle, kim[level + 1].angle), 1.9);
     EXPECT_NEAR(orderOf(kim[level].value, kim[level + 1].value), 2, 0.1);
-    // At 48 cells a diameter some nodes deep inside count as creased, which halves no error.
+    // At 48 cells a diameter some deep nodes count as creased, so the error does not halve.
     EXPECT_GE(orderOf(high[level].value, high[level + 1].value), 2.8);
     EXPECT_EQ(high[level].angle, kim[level].angle);
   }
@@ -123,7 +123,7 @@ TEST(FieldSampler, OrdersOnASphereAreThoseOfTheTheory) {
   EXPECT_LT(high[2].value, kim[2].value / 500);
 }
 
-// The accuracy that the contact test needs of a perfect field at 150^3.
+// The force accuracy that the contact test requires of a perfect field at 150^3.
 TEST(FieldSampler, MeetsTheForceAccuracyOnASphere) {
   const FieldGrid grid = cubeGrid(kSphereRadius, 150);
   const auto field = sampledField(sphereDistance(kSphereRadius), grid);
@@ -215,7 +215,7 @@ TEST(FieldSampler, DepthGrowsMonotonicallyAndContinuouslyBeyondTheBand) {
         ASSERT_LT(sample.phi, last + 1e-3) << depth;
         ASSERT_LT(last - sample.phi, 0.1) << depth;
         ASSERT_NEAR(-sample.phi, depth, 1.8) << depth;
-        const FieldRegion expected = depth > 5.25 ? FieldRegion::deep : FieldRegion::band;
+        const FieldRegion expected = depth > 5.25 ? FieldRegion::interior : FieldRegion::band;
         ASSERT_TRUE(sample.region == expected || std::abs(depth - 5.25) < 0.05) << depth;
         ASSERT_LT(angleBetween(sample.gradient, n), 0.4);
         last = sample.phi;
@@ -250,12 +250,12 @@ TEST(FieldSampler, DeepPointsWithoutACoarseLayerReportTheBand) {
   bare.coarse.clear();
   const auto field = withSamples(std::make_shared<const SurfaceField>(std::move(bare)));
   const GridSample sample = FieldSampler(*field, Sampler::high).at(Vec3(0.001, 0, 0));
-  EXPECT_EQ(sample.region, FieldRegion::deep);
+  EXPECT_EQ(sample.region, FieldRegion::interior);
   EXPECT_NEAR(sample.phi, -8 * grid.voxel, 1e-15);
   EXPECT_EQ(sample.gradient, Vec3::Zero());
 }
 
-TEST(FieldSampler, OutsideTheBandThePhiIsALowerBoundOfTheDistance) {
+TEST(FieldSampler, PhiOutsideTheBandIsALowerBoundOfTheDistance) {
   const FieldGrid grid = cubeGrid(kSphereRadius, 64);
   const Distance torus = torusDistance(0.033, 0.016);
   const auto field = sampledField(torus, grid);
@@ -275,7 +275,7 @@ TEST(FieldSampler, OutsideTheBandThePhiIsALowerBoundOfTheDistance) {
   EXPECT_GT(outside, 10000);
 }
 
-TEST(FieldSampler, AnyPointIsAnsweredWithFiniteNumbersOrNowhere) {
+TEST(FieldSampler, ReturnsFiniteNumbersOrNothingForAnyPoint) {
   const FieldGrid grid = cubeGrid(kSphereRadius, 40);
   const auto field = sampledField(sphereDistance(kSphereRadius), grid);
   const double inf = std::numeric_limits<double>::infinity();
@@ -291,14 +291,14 @@ TEST(FieldSampler, AnyPointIsAnsweredWithFiniteNumbersOrNowhere) {
           const GridSample sample = sampler.atGrid(q);
           EXPECT_TRUE(sample.gradient.allFinite());
           EXPECT_FALSE(std::isnan(sample.phi));
-          EXPECT_EQ(sample.region == FieldRegion::nowhere, q.hasNaN());
+          EXPECT_EQ(sample.region == FieldRegion::invalid, q.hasNaN());
           EXPECT_TRUE(!q.hasNaN() || sample.phi == inf);
           EXPECT_EQ(sampler.faceNear(q), -1);
         }
   }
 }
 
-TEST(FieldSampler, NothingDependsOnTheScale) {
+TEST(FieldSampler, IsIndependentOfTheScale) {
   const auto small = sampledField(sphereDistance(0.05), cubeGrid(0.05, 150));
   const auto large = sampledField(sphereDistance(10), cubeGrid(10, 150));
   const FieldSampler a(*small, Sampler::high), b(*large, Sampler::high);
@@ -314,7 +314,7 @@ TEST(FieldSampler, NothingDependsOnTheScale) {
 TEST(FieldSampler, FaceNearIsTheFaceOfTheNearestStoredNode) {
   const FieldGrid grid = cubeGrid(kSphereRadius, 40, 3);
   SurfaceField field = sampleFunction(sphereDistance(kSphereRadius), grid, 3);
-  // Each node names itself.
+  // Each node stores its own index as its face.
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
     FaceNodes faces{};
     const auto phi = field.distance[slot]->phi();
@@ -322,7 +322,7 @@ TEST(FieldSampler, FaceNearIsTheFaceOfTheNearestStoredNode) {
       const auto& at = field.block_at[slot];
       const int i = 8 * at[0] + n % 8, j = 8 * at[1] + n / 8 % 8, k = 8 * at[2] + n / 64;
       const auto index = static_cast<std::size_t>(n);
-      faces.face[index] = std::abs(phi[index]) < kBeyondBand ? (k * 64 + j) * 64 + i : -1;
+      faces.face[index] = std::abs(phi[index]) < kBackground ? (k * 64 + j) * 64 + i : -1;
     }
     field.face.push_back(std::make_shared<const FaceBlock>(faces));
   }
@@ -351,7 +351,7 @@ TEST(FieldSampler, NeedsTheSampleLayerAndAKnownName) {
 
 // P02. Across a crease the gradient is the derivative of the value, by central differences within a
 // cell; elsewhere it is the blend of nodal gradients, bit for bit.
-TEST(FieldSampler, FollowsACreaseByTheDerivativeOfTheValue) {
+TEST(FieldSampler, ResolvesACreaseByTheDerivativeOfTheValue) {
   FieldGrid grid;
   grid.voxel = 1e-3;
   grid.origin = Vec3::Constant(-0.016);
@@ -375,11 +375,11 @@ TEST(FieldSampler, FollowsACreaseByTheDerivativeOfTheValue) {
       const SurfaceSample at = reader.surfaceAtGrid(q);
       if (at.region != FieldRegion::band) continue;
       EXPECT_NEAR(at.phi, reader.phiAtGrid(q), 2e-6);
-      if (at.spread == 0) {
+      if (at.normal_dispersion == 0) {
         EXPECT_EQ(at.gradient, reader.atGrid(q).gradient);
         ++smooth;
       }
-      if (at.spread < 0.02) continue;
+      if (at.normal_dispersion < 0.02) continue;
       ++creased;
       for (int axis = 0; axis < 3; ++axis) {
         const Vec3 step = 0.05 * Vec3::Unit(axis);

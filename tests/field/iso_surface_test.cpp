@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "field/analytic_fields.h"
-#include "field/surface/iso_cases.h"
 #include "field/surface/models.h"
 
 namespace patina {
@@ -67,9 +66,9 @@ TEST(IsoCases, EveryPatternClosesToLoopsThatCrossAllItsEdgesOnce) {
   }
 }
 
-// A diagonal in a face could meet the neighbour's and join four triangles at one edge.
+// A diagonal in a cell face could meet the neighbour's and join four triangles at one edge.
 TEST(IsoCases, NoDiagonalLiesInAFaceOfTheCell) {
-  for (const IsoCase& c : isoCases())
+  for (const MarchingCubesCase& c : marchingCubesCases())
     for (std::size_t t = 0; t < c.count; ++t)
       for (std::size_t u = t + 1; u < c.count; ++u)
         for (std::size_t a = 0; a < 3; ++a)
@@ -80,7 +79,7 @@ TEST(IsoCases, NoDiagonalLiesInAFaceOfTheCell) {
           }
 }
 
-TEST(IsoSurface, OfASphereIsClosedOutwardAndSecondOrder) {
+TEST(IsoSurface, IsClosedOutwardAndSecondOrderOnASphere) {
   const double radius = 0.05;
   double area_error[2], volume_error[2];
   for (int level = 0; level < 2; ++level) {
@@ -114,8 +113,8 @@ TEST(IsoSurface, OffsetsOfATorusKeepItsTopology) {
   }
 }
 
-// Small and crossing shapes meet the ambiguous patterns; the surface must close in all of them.
-TEST(IsoSurface, OfNoiseIsClosedAndManifold) {
+// Small and crossing shapes contain the ambiguous patterns; the surface must be closed in all.
+TEST(IsoSurface, IsClosedAndManifoldForNoise) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> noise(-1, 1);
   const FieldGrid grid{Vec3::Zero(), 1, {33, 33, 33}};
@@ -123,7 +122,7 @@ TEST(IsoSurface, OfNoiseIsClosedAndManifold) {
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
     DistanceNodes nodes;
     for (float& phi : nodes.phi) phi = noise(random);
-    // A wall of outside nodes around, so that nothing leaves the field.
+    // Outside nodes surround the field, so that the surface does not leave it.
     for (int n = 0; n < kBlockNodes; ++n) {
       const auto& at = field.block_at[slot];
       const int i = 8 * at[0] + n % 8, j = 8 * at[1] + n / 8 % 8, k = 8 * at[2] + n / 64;
@@ -171,8 +170,8 @@ TEST(Dinosaur, IsOneClosedBodyAHundredMillimetresLong) {
   EXPECT_GT(volume(mesh), 1e-5);
 }
 
-// What is at the iso value itself is outside: a tip there does not touch.
-TEST(IsoSurface, OfAFieldThatIsNowhereBelowTheValueIsEmpty) {
+// A node at the iso value counts as outside: a tip there does not touch.
+TEST(IsoSurface, IsEmptyIfTheFieldIsNowhereBelowTheValue) {
   const FieldGrid grid{Vec3::Zero(), 1, {17, 17, 17}};
   const SurfaceField field =
       sampleFunction([](const Vec3& p) { return (p - Vec3(8, 8, 8)).norm(); }, grid, 8);

@@ -1,4 +1,4 @@
-// Meshes whose triangles share no corners: one body with its inside, or one sheet without.
+// Meshes whose triangles share no corners: one body with an inside, or one sheet without.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -6,13 +6,13 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "field/store/node_reader.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
-#include "geometry/winding/winding_number.h"
 #include "support/changed_mesh.h"
 #include "support/loose_triangles.h"
+#include "support/winding_sum.h"
 
 namespace patina {
 namespace {
@@ -57,7 +57,7 @@ double wrongShare(const TriangleMesh& truth, const BuiltField& field, double mar
   return static_cast<double>(wrong) / kSamples;
 }
 
-TEST(LooseTriangles, OfABodyAreOneBody) {
+TEST(LooseTriangles, FormOneBody) {
   const TriangleMesh ball = icosphere(0.05, 24);
   for (const TriangleMesh& mesh :
        {torus(0.04, 0.015, 80, 40), ball, box(Vec3(0.1, 0.06, 0.08), 24), vase(0.12, 0.01, 48, 25),
@@ -72,9 +72,9 @@ TEST(LooseTriangles, OfABodyAreOneBody) {
   }
 }
 
-TEST(LooseTriangles, ThatOverlapOrLeaveGapsAreOneBody) {
+TEST(LooseTriangles, FormOneBodyDespiteOverlapsAndGaps) {
   const TriangleMesh ball = icosphere(0.05, 24);
-  // Triangles that are a fifth too small leave gaps that are too wide to be joined.
+  // Triangles shrunk by a fifth leave gaps that are too wide to be joined.
   for (const double shrunk : {-0.2, -0.05, 0.05}) {
     const BuiltField made = builtAs(withShrunkenTriangles(ball, shrunk));
     EXPECT_EQ(made.report.open_triangles, 0U) << shrunk;
@@ -82,7 +82,7 @@ TEST(LooseTriangles, ThatOverlapOrLeaveGapsAreOneBody) {
   }
 }
 
-TEST(LooseTriangles, BesideAWeldedBodyAreABody) {
+TEST(LooseTriangles, FormABodyBesideAWeldedOne) {
   const TriangleMesh ball = icosphere(0.05, 24),
                      solid = moved(box(Vec3(0.1, 0.06, 0.08), 4), Vec3(0.12, 0, 0));
   const TriangleMesh truth = joined(ball, solid);
@@ -91,7 +91,7 @@ TEST(LooseTriangles, BesideAWeldedBodyAreABody) {
   EXPECT_LE(wrongShare(truth, made, 0.5), 0.001);
 }
 
-TEST(LooseTriangles, OfASheetStayOpen) {
+TEST(LooseTriangles, FormAnOpenSheet) {
   const TriangleMesh flat = sheet(0.1, 0.1, 40);
   const double voxel = voxelOf(flat);
   for (const double shift : {0.01, 0.1, 0.3}) {
@@ -118,7 +118,7 @@ std::size_t negativeNodes(const SurfaceField& field) {
   return count;
 }
 
-TEST(SurfaceSides, AreThoseThatWereAskedFor) {
+TEST(SurfaceSides, AreThoseRequested) {
   const TriangleMesh scan = withoutTop(icosphere(0.05, 24), 0.02);
   EXPECT_EQ(builtAs(scan).report.open_parts, 0U);
   for (const OpenSides sides : {OpenSides::one, OpenSides::two, OpenSides::closed}) {
@@ -132,13 +132,13 @@ TEST(SurfaceSides, AreThoseThatWereAskedFor) {
       }
     }
   }
-  // Nobody can be obeyed about a part without a rim.
+  // Requested sides have no effect on parts without a boundary.
   const BuiltField ball = builtAs(icosphere(0.05, 24), OpenSides::two);
   EXPECT_EQ(ball.report.open_parts, 0U);
   EXPECT_TRUE(ball.report.parts.empty());
 }
 
-// Two turns of a figure of eight about its middle while it goes round once.
+// A figure of eight makes two half turns about its centre on one way around.
 TriangleMesh kleinBottle(int around, int across) {
   TriangleMesh mesh;
   for (int i = 0; i < around; ++i)
@@ -159,7 +159,7 @@ TriangleMesh kleinBottle(int around, int across) {
   return mesh;
 }
 
-TEST(SurfaceSides, OfAKleinBottleMayBeTwo) {
+TEST(SurfaceSides, MayBeTwoForAKleinBottle) {
   const TriangleMesh mesh = kleinBottle(60, 40);
   const BuiltField two = builtAs(mesh, OpenSides::two);
   EXPECT_EQ(two.report.open_triangles, mesh.triangles.size());
@@ -192,7 +192,7 @@ TriangleMesh tetrahedra(int cells, double size) {
   return mesh;
 }
 
-TEST(InnerFaces, OfATetrahedralMeshAreLeftOutOfItsField) {
+TEST(InnerFaces, AreOmittedForATetrahedralMesh) {
   const TriangleMesh mesh = tetrahedra(16, 0.1); // 98,304 faces
   const BuiltField made = builtAs(mesh), solid = builtAs(box(Vec3::Constant(0.1), 16));
   std::printf("%zu faces: %.2f s of CPU\n", mesh.triangles.size(), made.report.cpu_seconds);

@@ -1,4 +1,4 @@
-// K14: the union is as exact as its parts, says who owns what, and costs what one object costs.
+// K14: the union is as exact as its parts, names the owner of each node, and costs like one object.
 #include "field/merge/merge_fields.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "field/analytic_fields.h"
 #include "field/merged_shapes.h"
 #include "field/sampling/field_sampler.h"
-#include "geometry/mesh/joint_mesh.h"
+#include "geometry/mesh/combined_mesh.h"
 #include "geometry/tree/triangle_tree.h"
 #include "support/node_values.h"
 
@@ -43,7 +43,7 @@ TEST(MergeFields, IsExactOutsideAndNeverTooDeepInside) {
   forPlaces(*m.field, [&](int i, int j, int k) {
     const Vec3 p = m.field->grid.toWorld(Vec3(i, j, k));
     const auto phi = static_cast<double>(test::phiAt(*m.field, i, j, k));
-    if (std::abs(phi) >= static_cast<double>(kBeyondBand)) return;
+    if (std::abs(phi) >= static_cast<double>(kBackground)) return;
     const double da = a.closestPoint(p).distance, db = b.closestPoint(p).distance;
     if (phi > 0) {
       EXPECT_NEAR(phi * m.lattice.voxel, std::min(da, db),
@@ -60,7 +60,7 @@ TEST(MergeFields, IsExactOutsideAndNeverTooDeepInside) {
         if ((foot + Vec3(x, 0, 0)).norm() >= 0.02)
           depth = std::min(depth, std::abs(0.02 - from.norm()));
       }
-      EXPECT_LE(-phi * m.lattice.voxel, depth + 6e-5); // the facets' sag
+      EXPECT_LE(-phi * m.lattice.voxel, depth + 6e-5); // depth of the facets below the sphere
       ++inside;
     }
   });
@@ -68,7 +68,7 @@ TEST(MergeFields, IsExactOutsideAndNeverTooDeepInside) {
   EXPECT_GT(inside, 100000u);
 }
 
-TEST(MergeFields, NodesHoldTheLeastOfThePartsAndItsOwner) {
+TEST(MergeFields, NodesHoldTheMinimumOfThePartsAndItsOwner) {
   const MergedShapes m = twoSpheres(0.03);
   std::size_t of[2] = {0, 0};
   forPlaces(*m.field, [&](int i, int j, int k) {
@@ -90,18 +90,18 @@ TEST(MergeFields, NodesHoldTheLeastOfThePartsAndItsOwner) {
     ASSERT_EQ(test::phiAt(*m.field, i, j, k), least);
     ASSERT_EQ(m.field->faceAt(i, j, k), face);
     if (face < 0) return;
-    ASSERT_EQ(partOfFace(m.parts, face, &FieldPart::first_face), owner);
+    ASSERT_EQ(objectOfFace(m.parts, face, &FieldPart::first_face), owner);
     ++of[owner];
   });
   EXPECT_GT(of[0], 10000u);
   EXPECT_GT(of[1], 10000u);
-  EXPECT_EQ(partOfFace(m.parts, -1, &FieldPart::first_face), -1);
+  EXPECT_EQ(objectOfFace(m.parts, -1, &FieldPart::first_face), -1);
 }
 
-TEST(MergeFields, IdenticalObjectsAreOneBitForBit) {
+TEST(MergeFields, IdenticalObjectsEqualOneBitForBit) {
   const TriangleMesh ball = icosphere(0.02, 16);
   const MergedShapes one = mergedShapes({ball}), two = mergedShapes({ball, ball});
-  ASSERT_EQ(two.field->top, one.field->top);
+  ASSERT_EQ(two.field->block_index, one.field->block_index);
   for (std::size_t s = 0; s < one.field->blockCount(); ++s)
     ASSERT_EQ(two.field->distance[s]->phi(), one.field->distance[s]->phi());
   forPlaces(*two.field, [&](int i, int j, int k) { // the first owns every tie
@@ -113,10 +113,10 @@ TEST(MergeFields, IdenticalObjectsAreOneBitForBit) {
   }
 }
 
-TEST(MergeFields, ObjectInsideAnotherIsNotThere) {
+TEST(MergeFields, ObjectInsideAnotherHasNoEffect) {
   const TriangleMesh big = icosphere(0.03, 16), small = icosphere(0.008, 8);
   const MergedShapes one = mergedShapes({big}), two = mergedShapes({big, small});
-  ASSERT_EQ(two.field->top, one.field->top);
+  ASSERT_EQ(two.field->block_index, one.field->block_index);
   for (std::size_t s = 0; s < one.field->blockCount(); ++s)
     ASSERT_EQ(two.field->distance[s]->phi(), one.field->distance[s]->phi());
 }
@@ -131,9 +131,9 @@ TEST(MergeFields, BlocksOfOneObjectAreShared) {
   EXPECT_EQ(shared, m.field->blockCount());
 }
 
-// T-K14c. A part alone on the lattice, and the same beside others; places are multiples of 2^-30 m,
+// T-K14c. A part alone on the lattice and beside others; positions are multiples of 2^-30 m,
 // so that the grids' different origins round nothing.
-TEST(MergeFields, NeighboursAndTheirOrderDoNotChangeAnObject) {
+TEST(MergeFields, ObjectDoesNotDependOnNeighboursOrTheirOrder) {
   const TriangleMesh ball = icosphere(0.01, 12);
   const MergedShapes one = mergedShapes({ball});
   const MergedShapes three = mergedShapes(
@@ -152,7 +152,7 @@ TEST(MergeFields, NeighboursAndTheirOrderDoNotChangeAnObject) {
   }
 }
 
-// A lower bound is what the swept test and the far field need.
+// The swept test and the far field need a lower bound.
 TEST(MergeFields, OutsideValuesAreLowerBoundsOfTheDistance) {
   const MergedShapes m = mergedShapes({movedBy(icosphere(0.008, 12), Vec3(-0.04, 0, 0)),
                                        movedBy(icosphere(0.012, 12), Vec3(0.03, 0.02, 0))});
@@ -168,10 +168,10 @@ TEST(MergeFields, OutsideValuesAreLowerBoundsOfTheDistance) {
     EXPECT_LE(sample.phi, tree.closestPoint(p).distance + 1e-9);
     far = std::max(far, sample.phi);
   }
-  EXPECT_GT(far, 0.02); // a bound that is worth something
+  EXPECT_GT(far, 0.02); // a useful bound
 }
 
-TEST(MergeFields, PartsThatDoNotFitTogetherAreRefused) {
+TEST(MergeFields, IncompatiblePartsAreRejected) {
   const MergedShapes m = twoSpheres(0.06);
   EXPECT_THROW((void)mergeFields({}, m.lattice), std::invalid_argument);
   EXPECT_THROW((void)mergeFields(m.parts, {m.lattice.anchor, 2 * m.lattice.voxel}),
@@ -181,8 +181,8 @@ TEST(MergeFields, PartsThatDoNotFitTogetherAreRefused) {
   EXPECT_THROW((void)mergeFields(apart, m.lattice), Error);
 }
 
-// Deeper than the band too, which is the parts' own.
-TEST(MergeFields, OfOnePartIsThatPart) {
+// This also holds deeper than the band, where only the part's own field counts.
+TEST(MergeFields, ReturnsASinglePartUnchanged) {
   for (const double band : {4.0, 6.0}) {
     const MergedShapes m = mergedShapes({icosphere(0.03, 6)}, 0x1p-9, false, band);
     const auto alone = withSamples(m.parts[0].field);

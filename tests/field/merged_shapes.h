@@ -1,10 +1,10 @@
-// Objects on a common lattice, as a scene makes them.
+// Objects on a common lattice, like those of a scene.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "field/merge/merge_fields.h"
 #include "field/merge/redistance.h"
 #include "geometry/mesh/shapes.h"

@@ -15,7 +15,7 @@ SurfaceField sampledBall() {
   return sampleFunction(test::sphereDistance(0.03), test::cubeGrid(0.05, 60), 4);
 }
 
-TEST(NodeReader, ReadsTheNodesOfAFieldAndWhatLiesBeyond) {
+TEST(NodeReader, ReadsTheNodesInsideAndOutsideTheBand) {
   const SurfaceField field = sampledBall();
   const NodeReader nodes(field);
   std::size_t stored = 0;
@@ -24,15 +24,15 @@ TEST(NodeReader, ReadsTheNodesOfAFieldAndWhatLiesBeyond) {
       for (int i = -1; i <= field.grid.nodes[0]; ++i) {
         const float phi = nodes.phiAt(i, j, k);
         ASSERT_EQ(phi, test::phiAt(field, i, j, k));
-        stored += std::abs(phi) < kBeyondBand;
+        stored += std::abs(phi) < kBackground;
       }
   EXPECT_GT(stored, 1000U);
-  EXPECT_EQ(nodes.phiAt(-1, 0, 0), kBeyondBand);
-  EXPECT_EQ(nodes.phiAt(30, 30, 30), -kBeyondBand);
+  EXPECT_EQ(nodes.phiAt(-1, 0, 0), kBackground);
+  EXPECT_EQ(nodes.phiAt(30, 30, 30), -kBackground);
 }
 
-// Every block by many at once, all of them at its first read.
-TEST(NodeReader, GivesTheSameToAllWhoReadABlockAtOnce) {
+// Many threads read every block at the same time, and each read is its first.
+TEST(NodeReader, ReadsTheSameBlockFromSeveralThreads) {
   const SurfaceField field = sampledBall();
   for (int round = 0; round < 20; ++round) {
     const NodeReader nodes(field);

@@ -1,4 +1,4 @@
-// Signs beside open parts of a mesh.
+// Signs near open parts of a mesh.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -6,11 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
 #include "support/changed_mesh.h"
+#include "support/mesh_defects.h"
 #include "support/node_values.h"
 #include "support/shared_data.h"
 
@@ -20,10 +21,10 @@ namespace {
 using test::inverted;
 using test::moved;
 
-constexpr double kHalf = 0.05; // of the terrain's side
-constexpr double kSag = 0.1;   // voxels; more than the facets of any mesh below
+constexpr double kHalf = 0.05; // half the side of the terrain [m]
+constexpr double kSag = 0.1;   // voxels; more than the facet error of any mesh below
 
-// Level at the rim, so that what lies beyond is told by x and y.
+// The terrain is level at its boundary, so that x and y determine the answer beyond it.
 double terrainHeight(double x, double y) {
   const double u = x / kHalf, v = y / kHalf;
   if (std::max(std::abs(u), std::abs(v)) >= 1) return 0;
@@ -50,7 +51,7 @@ struct Signs {
   std::size_t negative = 0, wrong = 0;
 };
 
-// Whether a node is negative; nothing where it stands right under the rim.
+// True if a node is negative; no value directly below the boundary.
 using MaybeInside = std::function<std::optional<bool>(const Vec3&, double)>;
 
 // `truth(p, d)`: d = distance to the mesh at p, in voxels.
@@ -79,7 +80,7 @@ bool overSquare(const Vec3& p) {
   return std::max(std::abs(p.x()), std::abs(p.y())) < kHalf + 1e-9;
 }
 
-TEST(OpenSigns, TerrainIsTheFrontOfAPlate) {
+TEST(OpenSigns, TerrainIsTheFrontOfAThickenedSheet) {
   for (const bool upright : {true, false}) {
     const TriangleMesh mesh = upright ? terrain() : inverted(terrain());
     const BuiltField made = built(mesh);
@@ -98,8 +99,8 @@ TEST(OpenSigns, TerrainIsTheFrontOfAPlate) {
   }
 }
 
-// Of nodes where the front decides the answer is exact: nothing but the plane and the triangle.
-TEST(OpenSigns, OneTriangleHasAFront) {
+// At nodes decided by the front the answer is exact: only the plane and the triangle count.
+TEST(OpenSigns, SingleTriangleHasAFront) {
   const Vec3 a(0, 0, 0), b(0.08, 0.01, 0.02), c(0.01, 0.06, 0.01);
   const TriangleMesh mesh{{a, b, c}, {{0, 1, 2}}, {}};
   const BuiltField made = built(mesh, 60);
@@ -112,7 +113,7 @@ TEST(OpenSigns, OneTriangleHasAFront) {
   EXPECT_GT(signs.negative, 1000U);
 }
 
-// A sphere's lower half, its rim a circle at z = 0.
+// A sphere's lower half; its boundary is a circle at z = 0.
 TriangleMesh bowl(double radius, int around, int down) {
   TriangleMesh mesh;
   mesh.positions.emplace_back(0, 0, -radius);
@@ -151,7 +152,7 @@ TEST(OpenSigns, BowlIsAShellAsDeepAsTheBand) {
     EXPECT_EQ(signs.wrong, 0U);
     EXPECT_GT(signs.negative, 30000U);
     EXPECT_EQ(made.report.ambiguous_signs, 0U);
-    // Deeper in the bowl there is nothing.
+    // No sign is set deeper in the bowl.
     const Vec3 q = made.field->grid.toGrid(Vec3(0, 0, -radius + (band + 2) * voxel));
     EXPECT_GT(test::phiAt(*made.field, static_cast<int>(q[0]), static_cast<int>(q[1]),
                           static_cast<int>(std::ceil(q[2]))),
@@ -173,7 +174,7 @@ TEST(OpenSigns, ClosedAndOpenPartsAreSignedByTheirOwnRule) {
           const bool sheet_is_nearest = std::abs(p.z()) < (p - centre).norm() - radius;
           return overSquare(p) && d <= band && p.z() < 0 && sheet_is_nearest;
         });
-    EXPECT_LT(signs.wrong, 20U); // within the facets' sag at the holes
+    EXPECT_LT(signs.wrong, 20U); // within the facet error at the holes
     EXPECT_EQ(made.report.open_triangles, 800U);
   }
 }
@@ -190,7 +191,7 @@ TEST(OpenSigns, TwoSidedSheetsHaveNoInside) {
   EXPECT_EQ(two.report.ambiguous_signs, 0U);
 }
 
-TEST(OpenSigns, AreTheSameEveryTime) {
+TEST(OpenSigns, AreDeterministic) {
   const TriangleMesh mesh = joined(terrain(40), moved(icosphere(0.02, 10), Vec3(0, 0, 0.03)));
   const BuiltField first = built(mesh), second = built(mesh);
   EXPECT_EQ(first.report.ambiguous_signs, second.report.ambiguous_signs);
@@ -198,7 +199,7 @@ TEST(OpenSigns, AreTheSameEveryTime) {
     ASSERT_EQ(first.field->distance[slot]->phi(), second.field->distance[slot]->phi());
 }
 
-TEST(OpenSigns, CoarseNodesAreNegativeInThePlateOnly) {
+TEST(OpenSigns, CoarseNodesAreNegativeInsideTheThickenedSheetOnly) {
   const TriangleMesh flat = sheet(2 * kHalf, 2 * kHalf, 10);
   const double height = 0.03;
   const SurfaceField field = *built(joined(flat, moved(flat, Vec3(0, 0, height)))).field;
@@ -217,8 +218,8 @@ TEST(OpenSigns, CoarseNodesAreNegativeInThePlateOnly) {
   EXPECT_GT(behind, 50U);
 }
 
-// A twin of the scan below: a closed shape with holes and nothing open about it.
-TEST(OpenSigns, HoledBodyIsUnsureOnlyNearItsHoles) {
+// Counterpart of the scan below: a closed shape with holes but no open part.
+TEST(OpenSigns, SignsOfAHoledBodyAreAmbiguousOnlyNearItsHoles) {
   const TriangleMesh mesh = withHoles(torus(0.04, 0.015, 120, 60), 12, 0.003, 2);
   const BuiltField made = built(mesh);
   EXPECT_EQ(made.report.open_triangles, 0U);
@@ -226,7 +227,7 @@ TEST(OpenSigns, HoledBodyIsUnsureOnlyNearItsHoles) {
   EXPECT_LT(made.report.ambiguous_signs, 12 * 200U);
 }
 
-TEST(OpenSigns, ScanWithHolesIsUnsureOnlyNearItsHoles) {
+TEST(OpenSigns, SignsOfAScanWithHolesAreAmbiguousOnlyNearItsHoles) {
   const auto path = test::sharedData("meshes/plane_holes.obj");
   PATINA_SKIP_WITHOUT(path);
   TriangleMesh mesh = readMesh(path);

@@ -1,4 +1,4 @@
-#include "field/store/packed_distance.h"
+#include "field/store/surface_field.h"
 
 #include <bit>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/shapes.h"
 
 namespace patina {
@@ -22,7 +22,7 @@ void expectKept(const DistanceNodes& nodes) {
 }
 
 // Any bits of a finite float, and any share of nodes beyond the band on either side.
-TEST(DistanceBlock, GivesBackEveryBitOfAnyNodes) {
+TEST(DistanceBlock, RestoresEveryBitOfAnyNodes) {
   std::mt19937 random(5);
   for (const double beyond : {0.0, 0.02, 0.5, 0.98, 1.0})
     for (const double inside : {0.0, 0.5, 1.0})
@@ -30,9 +30,9 @@ TEST(DistanceBlock, GivesBackEveryBitOfAnyNodes) {
         DistanceNodes nodes;
         for (float& phi : nodes.phi) {
           do phi = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-          while (!(std::abs(phi) < kBeyondBand));
+          while (!(std::abs(phi) < kBackground));
           if (std::bernoulli_distribution(beyond)(random))
-            phi = std::bernoulli_distribution(inside)(random) ? -kBeyondBand : kBeyondBand;
+            phi = std::bernoulli_distribution(inside)(random) ? -kBackground : kBackground;
         }
         expectKept(nodes);
       }
@@ -47,7 +47,7 @@ std::int32_t ordered(std::int32_t bits) {
   return bits < 0 ? bits ^ 0x7FFFFFFF : bits;
 }
 
-// What the rows before its own lead to at a node.
+// Returns the value predicted from the preceding rows (Lorenzo predictor, Ibarria et al. 2003).
 float foreseen(const std::array<float, kBlockNodes>& phi, std::size_t n) {
   const std::size_t y = n / 8 % 8, z = n / 64;
   if (y > 0 && z > 0) return phi[n - 8] + (phi[n - 64] - phi[n - 72]);
@@ -57,19 +57,19 @@ float foreseen(const std::array<float, kBlockNodes>& phi, std::size_t n) {
   return y + z > 1 ? last + (last - phi[n - 2 * step]) : last;
 }
 
-// A node whose difference from what is foreseen takes just so many bits; never far from zero.
+// A node whose difference from its prediction takes exactly so many bits; never far from zero.
 float nodeOfWidth(float expected, unsigned width, std::mt19937& random) {
   const std::int32_t from = ordered(std::bit_cast<std::int32_t>(expected));
   if (width == 0) return expected;
-  const unsigned bits = std::min(width, 30U); // of the code: twice the difference, and its sign
+  const unsigned bits = std::min(width, 30U); // twice the difference, and its sign
   const std::uint32_t least = std::uint32_t{1} << (bits - 2);
   auto by = static_cast<std::int32_t>(least / 2 + 1 + random() % std::max(least / 2, 1U));
   if (from > 0x40000000 || (from > -0x40000000 && random() % 2 == 0)) by = -by;
   return std::bit_cast<float>(ordered(from + by));
 }
 
-// Each width before each other in the packed order. That they are those is seen from the bytes.
-TEST(DistanceBlock, KeepsDifferencesOfEveryWidthBesideAnyOther) {
+// Each width precedes each other in the packed order. The bytes show that the widths are right.
+TEST(DistanceBlock, KeepsDifferencesOfAnyTwoWidthsSideBySide) {
   std::mt19937 random(7);
   std::set<std::pair<unsigned, unsigned>> met;
   for (int round = 0; round < 40; ++round) {
@@ -95,7 +95,7 @@ TEST(DistanceBlock, KeepsTheSignOfZeroAndTheSmallestNumbers) {
     nodes.phi[n] = values[n * 2654435769U >> 16 & 7U];
   }
   expectKept(nodes);
-  for (const float value : {0.0F, -0.0F, kBeyondBand, -kBeyondBand}) {
+  for (const float value : {0.0F, -0.0F, kBackground, -kBackground}) {
     nodes.phi.fill(value);
     expectKept(nodes);
   }
@@ -109,8 +109,8 @@ DistanceNodes sampled(const std::function<double(double, double, double)>& phi) 
   return nodes;
 }
 
-// Whatever way it faces a plane is what its rows lead to, but for their rounding.
-TEST(DistanceBlock, HoldsAPlaneInAFewBitsANode) {
+// The rows predict a plane of any orientation up to their rounding.
+TEST(DistanceBlock, StoresAPlaneInAFewBitsPerNode) {
   for (const Vec3& n :
        {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 2, 3), Vec3(-3, 1, 2)}) {
     const Vec3 u = n.normalized();
@@ -120,7 +120,7 @@ TEST(DistanceBlock, HoldsAPlaneInAFewBitsANode) {
   }
 }
 
-// Noise is what it cannot foresee: then it may be little more than the nodes themselves.
+// Noise is unpredictable: the packed size may then slightly exceed that of the nodes.
 TEST(DistanceBlock, IsAtMostAnEleventhLargerThanItsNodes) {
   std::mt19937 random(3);
   std::size_t most = 0;
@@ -128,16 +128,16 @@ TEST(DistanceBlock, IsAtMostAnEleventhLargerThanItsNodes) {
     DistanceNodes nodes;
     for (float& phi : nodes.phi) do
         phi = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-      while (!(std::abs(phi) < kBeyondBand));
+      while (!(std::abs(phi) < kBackground));
     most = std::max(most, DistanceBlock(nodes).bytes());
   }
-  EXPECT_EQ(most, 2224U); // 144 and 128 fours of 16 bytes, and two more that are read
+  EXPECT_EQ(most, 2224U); // 144 and 128 groups of four with 16 bytes, and two more that are read
   EXPECT_LE(11 * most, 12 * sizeof(DistanceNodes));
 }
 
-// It fills in the commoner of the two ends, wherever in a row its nodes stand.
-TEST(DistanceBlock, ItsSizeDoesNotDependOnWhereTheNodesBeyondTheBandStand) {
-  for (const float beyond : {kBeyondBand, -kBeyondBand})
+// The more frequent of the two ends is filled in, at any position in a row.
+TEST(DistanceBlock, SizeDoesNotDependOnTheNodesBeyondTheBand) {
+  for (const float beyond : {kBackground, -kBackground})
     for (std::size_t lane = 0; lane < 4; ++lane) {
       std::mt19937 random(9);
       DistanceNodes nodes;

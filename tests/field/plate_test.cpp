@@ -1,16 +1,17 @@
-// One-sided open parts as fronts of plates.
+// One-sided open parts as fronts of thickened sheets.
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "field/build/build_field.h"
-#include "field/build/distance_blocks.h"
-#include "field/build/plate.h"
+#include "field/construction/build_field.h"
+#include "field/construction/distance_blocks.h"
+#include "field/construction/thickened_sheet.h"
 #include "field/store/node_reader.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
 #include "support/changed_mesh.h"
+#include "support/mesh_defects.h"
 
 namespace patina {
 namespace {
@@ -27,7 +28,7 @@ BuiltField builtSheet(const TriangleMesh& mesh) {
   return buildField(mesh, spec, progress);
 }
 
-// visit(p, phi, face) at every node that is stored.
+// Calls visit(p, phi, face) at every stored node.
 template <typename Visit> void forNodes(const SurfaceField& field, const Visit& visit) {
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
     DistanceNodes nodes;
@@ -77,8 +78,8 @@ std::vector<TriangleMesh> openMeshes() {
           {{Vec3(0, 0, 0), Vec3(0.08, 0.01, 0.02), Vec3(0.01, 0.06, 0.01)}, {{0, 1, 2}}, {}}};
 }
 
-// Rounded at the edges of its back and of its sides: by half a cell's diagonal at most.
-TEST(Plate, OfASheetIsABoxAsThickAsTheBand) {
+// The edges of the back and of the sides are rounded by at most half a cell's diagonal.
+TEST(Plate, IsABoxAsThickAsTheBandForASheet) {
   const TriangleMesh flat = sheet(kSide, kSide, 10);
   const SurfaceField field = *builtSheet(flat).field;
   const double thickness = field.band * field.grid.voxel;
@@ -96,7 +97,7 @@ TEST(Plate, OfASheetIsABoxAsThickAsTheBand) {
   EXPECT_LT(worst, std::sqrt(3.0) / 2);
 }
 
-TEST(Plate, LeavesTheFrontAsItIs) {
+TEST(Plate, KeepsTheFrontUnchanged) {
   const TriangleMesh mesh = waves();
   const SurfaceField field = *builtSheet(mesh).field;
   const TriangleTree tree(mesh);
@@ -106,7 +107,7 @@ TEST(Plate, LeavesTheFrontAsItIs) {
     if (std::max(std::abs(p.x()), std::abs(p.y())) > kSide / 2 - band * voxel) return;
     const double d = tree.closestPoint(p).distance / voxel;
     if (d > band || (phi < 0 && d > band / 2 - 0.5)) return;
-    // Half-way to the back.
+    // The node lies halfway to the back.
     EXPECT_NEAR(std::abs(phi), d, 1e-4) << p.transpose();
     ++(phi < 0 ? behind : before);
   });
@@ -114,7 +115,7 @@ TEST(Plate, LeavesTheFrontAsItIs) {
   EXPECT_GT(behind, 5000U);
 }
 
-// A distance: no two neighbours differ by more than they are apart.
+// A distance differs between neighbours by no more than their spacing.
 TEST(Plate, HasNoJumps) {
   int shape = 0;
   for (const TriangleMesh& mesh : openMeshes()) {
@@ -153,13 +154,13 @@ TEST(Plate, HasTheFacesOfItsFront) {
     ++faces;
     const auto f = static_cast<std::size_t>(face);
     const Vec3 centre = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
-    // Of the plate's thickness, the band past it, and a face.
+    // Bound: the thickness of the sheet, the band behind it, and one face.
     ASSERT_LE((p - centre).norm(), 2 * field.band * field.grid.voxel + 0.01);
   });
   EXPECT_GT(faces, 100000U);
 }
 
-TEST(Plate, ItsCapsStopWhenCancelled) {
+TEST(Plate, CapsStopIfCancelled) {
   const TriangleMesh mesh = sheet(kSide, kSide, 4);
   const TriangleTree tree(mesh);
   FieldSpec spec;
@@ -167,13 +168,13 @@ TEST(Plate, ItsCapsStopWhenCancelled) {
   Progress running, stopped;
   stopped.cancel();
   const FieldBuilder builder =
-      distanceBlocks(mesh, tree, withRoomForPlates(gridAround(bounds(mesh), spec), spec.band),
+      distanceBlocks(mesh, tree, paddedForSheets(gridAround(bounds(mesh), spec), spec.band),
                      spec.band + 1.5, running, 0, 1);
-  EXPECT_THROW((void)plateCaps(builder, mesh, tree, openParts(mesh), spec.band, stopped),
+  EXPECT_THROW((void)sheetCaps(builder, mesh, tree, openParts(mesh), spec.band, stopped),
                Cancelled);
 }
 
-// Its back is a surface like any other.
+// The back is a surface like any other.
 TEST(Plate, ReachesItsBandPastItsBackAndItsSides) {
   const double side = 20, band = 4; // [voxel]
   FieldSpec spec;
@@ -201,8 +202,8 @@ TEST(Plate, ReachesItsBandPastItsBackAndItsSides) {
   }
 }
 
-// A back as large as the front, and the sides but for a voxel beneath the rim.
-TEST(Plate, ItsCapsCloseIt) {
+// The back is as large as the front, and the sides end a voxel below the boundary.
+TEST(Plate, IsClosedByItsCaps) {
   const double side = 40, band = 6; // [voxel]
   FieldSpec spec;
   spec.voxel = 1;

@@ -1,4 +1,4 @@
-// F9: after re-distancing a union's depth is that to its own surface.
+// F9: after re-distancing, the depth of a union is the distance to its own surface.
 #include "field/merge/redistance.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::vector<TriangleMesh> pair() {
           movedBy(icosphere(kR, 24), Vec3(kOff, 0, 0))};
 }
 
-// At h = 2^-11 m, by min alone and re-distanced: made once.
+// Built once at h = 2^-11 m, by min alone and re-distanced.
 const MergedShapes& thePair(bool redistance = false) {
   static const MergedShapes min = mergedShapes(pair()), exact = mergedShapes(pair(), 0x1p-11, true);
   return redistance ? exact : min;
@@ -47,7 +47,7 @@ std::vector<TriangleMesh> bars() {
   return {box(Vec3(0.06, 0.02, 0.06)), box(Vec3(0.02, 0.06, 0.06))};
 }
 
-// Two bars that cross, of one length along z.
+// Two crossing bars of equal length along z.
 double depthInCross(const Vec3& p) {
   const double wide = 0.03, narrow = 0.01;
   double depth = wide - std::abs(p.z());
@@ -69,7 +69,7 @@ template <class Depth> double worstNode(const SurfaceField& field, const Depth& 
       const auto phi = static_cast<double>(test::phiAt(field, i[0], i[1], i[2]));
       if (!(phi < 0)) continue;
       const double exact = depth(field.grid.toWorld(Vec3(i[0], i[1], i[2]))) / field.grid.voxel;
-      if (std::abs(phi) < static_cast<double>(kBeyondBand))
+      if (std::abs(phi) < static_cast<double>(kBackground))
         worst = std::max(worst, std::abs(-phi - exact));
       else
         worst = std::max(worst, field.band - exact);
@@ -91,7 +91,7 @@ template <class Depth> double worstCoarse(const SurfaceField& field, const Depth
   return worst;
 }
 
-TEST(Redistance, DepthInTwoSpheresIsThatOfTheClosedForm) {
+TEST(Redistance, DepthInTwoSpheresMatchesTheClosedForm) {
   const MergedShapes &before = thePair(), &after = thePair(true);
   EXPECT_GT(worstCoarse(*before.field, depthInPair), 10); // F9: 10 mm for 17.32
   EXPECT_GT(worstNode(*before.field, depthInPair), 1);
@@ -101,7 +101,7 @@ TEST(Redistance, DepthInTwoSpheresIsThatOfTheClosedForm) {
   EXPECT_LT(after.field->blockCount(), before.field->blockCount());
 }
 
-TEST(Redistance, DepthInACrossOfBarsIsThatOfTheClosedForm) {
+TEST(Redistance, DepthInACrossOfBarsMatchesTheClosedForm) {
   const MergedShapes after = mergedShapes(bars(), 0x1p-11, true);
   EXPECT_GT(worstNode(*mergedShapes(bars()).field, depthInCross), 2);
   EXPECT_LT(worstNode(*after.field, depthInCross), 0.1);
@@ -115,7 +115,7 @@ TEST(Redistance, ErrorAtTheCreaseFallsWithTheVoxel) {
   }
 }
 
-TEST(Redistance, LeavesEveryNodeThatMinHadRight) {
+TEST(Redistance, KeepsEveryNodeThatIsAlreadyExact) {
   const MergedShapes& m = thePair();
   Progress progress;
   const SurfaceField before = mergeFields(m.parts, m.lattice);
@@ -140,7 +140,7 @@ TEST(Redistance, LeavesEveryNodeThatMinHadRight) {
   EXPECT_GT(same, before.blockCount() / 2); // shared, not copied
 }
 
-TEST(Redistance, ObjectsThatDoNotMeetOrCoincideChangeNothing) {
+TEST(Redistance, DisjointOrCoincidentObjectsChangeNothing) {
   const MergedShapes apart = mergedShapes({movedBy(icosphere(0.01, 12), Vec3(-0.02, 0, 0)),
                                            movedBy(icosphere(0.01, 12), Vec3(0.02, 0, 0))},
                                           0x1p-11, true);
@@ -151,12 +151,13 @@ TEST(Redistance, ObjectsThatDoNotMeetOrCoincideChangeNothing) {
   const std::vector<TriangleMesh> boxes{box(Vec3(0.05, 0.06, 0.04)), box(Vec3(0.05, 0.06, 0.04))};
   const MergedShapes before = mergedShapes(boxes, 0x1p-10),
                      after = mergedShapes(boxes, 0x1p-10, true);
-  EXPECT_EQ(after.field->top, before.field->top); // also blocks that know one face alone
+  EXPECT_EQ(after.field->block_index,
+            before.field->block_index); // blocks with a single face count too
 }
 
-// A sheet whose front is `front` voxels high and a cube that it runs through: the depth under the
-// cube is that to the plate's back, or to where the cube's sides come out of the front.
-TEST(Redistance, KnowsTheBackOfAPlate) {
+// A sheet whose front is `front` voxels high and a cube that penetrates it: the depth below the
+// cube is that to the sheet's back, or to where the cube's sides leave the front.
+TEST(Redistance, IncludesTheBackOfAThickenedSheet) {
   const double voxel = 0x1p-10;
   for (const int front : {0, -2}) {
     const TriangleMesh plate = movedBy(sheet(60 * voxel, 60 * voxel, 6), Vec3(0, 0, front * voxel));
@@ -194,7 +195,7 @@ TEST(Redistance, KnowsTheBackOfAPlate) {
   }
 }
 
-TEST(Redistance, UnionSurfaceHasTheAreaOfTheClosedForm) {
+TEST(Redistance, UnionSurfaceAreaMatchesTheClosedForm) {
   const MergedShapes& m = thePair();
   Progress progress;
   const UnionSurface surface = unionSurface(m.parts, m.lattice, m.joint, progress);
@@ -204,7 +205,7 @@ TEST(Redistance, UnionSurfaceHasTheAreaOfTheClosedForm) {
   ASSERT_EQ(surface.face.size(), surface.mesh.triangles.size());
 }
 
-TEST(Redistance, CancelledThrows) {
+TEST(Redistance, ThrowsIfCancelled) {
   const MergedShapes& m = thePair();
   Progress progress;
   progress.cancel();
@@ -213,25 +214,25 @@ TEST(Redistance, CancelledThrows) {
       Cancelled);
 }
 
-// The blended gradient vanishes at the centre; the corners' own feet do not.
-TEST(DeepFeet, FindTheCreaseFromTheCentreOfTwoSpheres) {
+// The blended gradient vanishes at the centre; the corners' own closest points do not.
+TEST(InteriorClosestPoints, FindTheCreaseFromTheCentreOfTwoSpheres) {
   const MergedShapes m = mergedShapes(pair(), 0.07 / 134, true);
   const FieldSampler sampler(*m.field, Sampler::high);
   for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1e-4, 0, 0), Vec3(0, 1e-4, 0), Vec3(-7e-5, 0, 7e-5)}) {
-    const auto feet = sampler.deepFeet(m.field->grid.toGrid(p));
+    const auto feet = sampler.interiorClosestPoints(m.field->grid.toGrid(p));
     ASSERT_TRUE(feet);
     EXPECT_TRUE(feet->opposed);
     EXPECT_NEAR((m.field->grid.toWorld(feet->nearest) - p).norm(), kCrease, m.lattice.voxel);
   }
-  const auto aside = sampler.deepFeet(m.field->grid.toGrid(Vec3(0, 0.007, 0)));
+  const auto aside = sampler.interiorClosestPoints(m.field->grid.toGrid(Vec3(0, 0.007, 0)));
   ASSERT_TRUE(aside);
   EXPECT_FALSE(aside->opposed);
-  EXPECT_FALSE(sampler.deepFeet(Vec3(-100, 0, 0)));
-  EXPECT_FALSE(sampler.deepFeet(Vec3::Constant(std::nan(""))));
+  EXPECT_FALSE(sampler.interiorClosestPoints(Vec3(-100, 0, 0)));
+  EXPECT_FALSE(sampler.interiorClosestPoints(Vec3::Constant(std::nan(""))));
 }
 
-// A bar across the end of a longer one, whose fields are longer than they are high.
-TEST(Redistance, UnionSurfaceLeavesOutWhatLiesAtTheEndOfALongPart) {
+// A bar crosses the end of a longer one; both fields are longer than high.
+TEST(Redistance, UnionSurfaceOmitsTheHiddenEndOfALongPart) {
   const TriangleMesh post = box(Vec3(0.02, 0.06, 0.02), 2);
   const TriangleMesh bar = movedBy(box(Vec3(0.04, 0.01, 0.01), 4), Vec3(0, 0.022, 0));
   const MergedShapes m = mergedShapes({post, bar}, 0x1p-10);

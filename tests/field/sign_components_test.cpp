@@ -1,4 +1,4 @@
-// What signs are made of, against brute force over single nodes.
+// Tests the components of signs against brute force over single nodes.
 #include "field/signs/sign_components.h"
 
 #include <map>
@@ -17,7 +17,7 @@ bool isSafe(float a, float b) {
   return a + b > 1 + kMargin;
 }
 
-// Some blocks stored, with random distances; `dense` of the nodes are near the surface.
+// Some blocks are stored with random distances; `dense` of the nodes are near the surface.
 FieldBuilder randomBuilder(unsigned seed, double dense) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> near(0, 0.5F), far(0.3F, 1.1F);
@@ -27,25 +27,25 @@ FieldBuilder randomBuilder(unsigned seed, double dense) {
   for (int z = 0; z < kBlocks[2]; ++z)
     for (int y = 0; y < kBlocks[1]; ++y)
       for (int x = 0; x < kBlocks[0]; ++x) {
-        builder.field.top.push_back(SurfaceField::kOutside);
+        builder.field.block_index.push_back(SurfaceField::kOutside);
         if (random() % 4 == 0) continue;
-        builder.field.top.back() = static_cast<std::int32_t>(builder.distance.size());
+        builder.field.block_index.back() = static_cast<std::int32_t>(builder.distance.size());
         builder.field.block_at.push_back({x, y, z});
         DistanceNodes nodes;
         for (float& d : nodes.phi)
           d = std::bernoulli_distribution(dense)(random) ? near(random) : far(random);
         if (random() % 8 == 0) // now and then beyond the band
-          nodes.phi[random() % kBlockNodes] = kBeyondBand;
+          nodes.phi[random() % kBlockNodes] = kBackground;
         builder.distance.push_back(std::make_shared<const DistanceBlock>(nodes));
       }
   return builder;
 }
 
-// Every node of a stored block and every unstored block is a place; which are connected.
+// Connectivity of all nodes of stored blocks and of all unstored blocks.
 class Places {
  public:
   explicit Places(const FieldBuilder& builder) : builder_(builder) {
-    group_.assign(builder.field.top.size() * kBlockNodes, -1);
+    group_.assign(builder.field.block_index.size() * kBlockNodes, -1);
     within_ = group_;
     int group = 0;
     for (std::size_t i = 0; i < group_.size(); ++i) {
@@ -54,11 +54,13 @@ class Places {
     }
   }
 
-  std::int32_t slotOf(std::size_t place) const { return builder_.field.top[place / kBlockNodes]; }
+  std::int32_t slotOf(std::size_t place) const {
+    return builder_.field.block_index[place / kBlockNodes];
+  }
   int group(std::size_t place) const { return group_[place]; }
   int within(std::size_t place) const { return within_[place]; } // connected inside its block
 
-  // The six about it, and whether the edge is safe.
+  // The six neighbours, and whether the edge is safe.
   template <class Visit> void forEdges(std::size_t place, const Visit& visit) const {
     const std::size_t top = place / kBlockNodes, node = place % kBlockNodes;
     const Index3 block{static_cast<int>(top) % kBlocks[0],
@@ -114,8 +116,8 @@ std::uint32_t partAt(const Components& components, const Places& places, std::si
 void expectBruteForce(const FieldBuilder& builder) {
   Components components = connectedComponents(builder);
   const Places places(builder);
-  const std::size_t count = builder.field.top.size() * kBlockNodes;
-  ASSERT_EQ(components.parts.size(), components.first.back() + builder.field.top.size());
+  const std::size_t count = builder.field.block_index.size() * kBlockNodes;
+  ASSERT_EQ(components.parts.size(), components.first.back() + builder.field.block_index.size());
   ASSERT_EQ(components.first.size(), builder.distance.size() + 1);
 
   std::map<int, std::uint32_t> part_of, root_of;
@@ -143,7 +145,7 @@ void expectBruteForce(const FieldBuilder& builder) {
     }
     own.slot = places.slotOf(place);
   }
-  // As many parts as groups: none is joined that is not connected.
+  // There are as many parts as groups: only connected nodes are joined.
   std::set<std::uint32_t> stored_parts, roots;
   for (const auto& [place, part] : part_of)
     ASSERT_TRUE(stored_parts.insert(part).second || part >= components.first.back());
@@ -164,7 +166,7 @@ void expectBruteForce(const FieldBuilder& builder) {
   }
 }
 
-TEST(SignComponents, AreTheNodesThatSafeEdgesConnect) {
+TEST(SignComponents, AreNodesConnectedBySafeEdges) {
   for (unsigned seed = 1; seed <= 12; ++seed)
     for (const double dense : {0.0, 0.15, 0.35, 0.6, 1.0})
       expectBruteForce(randomBuilder(seed, dense));

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build/distance_blocks.h"
+#include "field/construction/distance_blocks.h"
 #include "geometry/mesh/shapes.h"
 
 namespace patina::signs {
@@ -16,7 +16,7 @@ struct Neighbour {
   double margin;
 };
 
-// All deeper ones of the 26 about a node.
+// All deeper ones of the 26 neighbours of a node.
 std::vector<Neighbour> deeperAbout(const FieldBuilder& builder, const Index3& at, float depth) {
   const SurfaceField& field = builder.field;
   std::vector<Neighbour> result;
@@ -32,7 +32,7 @@ std::vector<Neighbour> deeperAbout(const FieldBuilder& builder, const Index3& at
     NodePlace place;
     place.top_index =
         static_cast<std::size_t>((b[2] * field.blocks[1] + b[1]) * field.blocks[0] + b[0]);
-    place.slot = field.top[place.top_index] < 0 ? -1 : field.top[place.top_index];
+    place.slot = field.block_index[place.top_index] < 0 ? -1 : field.block_index[place.top_index];
     place.node = node.node;
     const double d =
         place.slot < 0
@@ -44,8 +44,8 @@ std::vector<Neighbour> deeperAbout(const FieldBuilder& builder, const Index3& at
   return result;
 }
 
-// Gaps and plates of about a voxel, where much is in sight of nothing but itself.
-TEST(Slivers, SeeADeeperNodeWhereTheDistancesOrNoTriangleSaysSo) {
+// Gaps and walls of about a voxel, where many nodes see no other node.
+TEST(Slivers, FindDeeperNodeByDistanceOrFreeSegment) {
   std::size_t by_distance = 0, by_sight = 0, none = 0;
   for (const double band : {1.2, 4.0}) {
     TriangleMesh mesh = icosphere(0.01, 2);
@@ -66,7 +66,7 @@ TEST(Slivers, SeeADeeperNodeWhereTheDistancesOrNoTriangleSaysSo) {
     for (std::size_t slot = 0; slot < builder.distance.size(); ++slot)
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
         const float depth = builder.distance[slot]->phi()[n];
-        if (!(depth < kBeyondBand)) continue;
+        if (!(depth < kBackground)) continue;
         const auto s = static_cast<std::int32_t>(slot);
         const Index3 at = nodeAt(builder, s, n);
         const Vec3 p = builder.field.grid.toWorld(Vec3(at[0], at[1], at[2]));
@@ -91,12 +91,12 @@ TEST(Slivers, SeeADeeperNodeWhereTheDistancesOrNoTriangleSaysSo) {
         } else {
           ++none;
           for (const Neighbour& to : deeper) ASSERT_LE(to.margin, 1.01e-3);
-          // No sight along the four likeliest.
+          // The four likeliest directions are blocked.
           for (std::size_t i = 0; i < std::min<std::size_t>(deeper.size(), 4); ++i)
             if (i + 1 == deeper.size() || deeper[i].margin > deeper[i + 1].margin + 1e-6)
               ASSERT_FALSE(inSight(deeper[i]));
             else
-              break; // which of two alike comes first is rounding
+              break; // rounding decides between two equal ones
         }
       }
   }

@@ -1,11 +1,11 @@
-// Who has a vote on a side, and what is left in doubt. A voxel is a metre here.
+// Votes on the side of a node, and the nodes that stay ambiguous. A voxel is a metre here.
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "field/build/build_field.h"
-#include "field/build/distance_blocks.h"
+#include "field/construction/build_field.h"
+#include "field/construction/distance_blocks.h"
 #include "field/signs/signs.h"
 #include "field/store/node_reader.h"
 #include "field/surface/iso_surface.h"
@@ -22,8 +22,8 @@ double distanceToBox(const Vec3& p, const Vec3& half) {
   return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
 }
 
-// Most of the body lies near its surface, and has no vote.
-TEST(SignVotes, TheDeepPartOfABodySpeaksForTheThinOne) {
+// Most of the body lies near its surface and has no vote.
+TEST(SignVotes, DeepPartOfABodyDecidesForItsThinPart) {
   const auto disc = [](const Vec3& p) {
     return std::min(distanceToBox(p, Vec3(20, 20, 1.6)), p.norm() - 6);
   };
@@ -45,9 +45,9 @@ TEST(SignVotes, TheDeepPartOfABodySpeaksForTheThinOne) {
   EXPECT_EQ(built.report.ambiguous_signs, 0U);
 }
 
-// The layer between the box's bottom and the sheet is nearest to the sheet, of whose two sides
-// neither says anything of the box.
-TEST(SignVotes, AnOpenFaceContradictsNobody) {
+// The layer between the box's bottom and the sheet is nearest to the sheet, and neither of the
+// sheet's sides determines the side of the box.
+TEST(SignVotes, OpenFaceContradictsNoVote) {
   const TriangleMesh mesh =
       joined(box(Vec3(25, 25, 20), 5), moved(sheet(25, 25, 5), Vec3(0, 0, -8.4)));
   const FieldGrid grid{Vec3(-20, -20, -17.15), 1, {41, 41, 37}};
@@ -63,8 +63,8 @@ TEST(SignVotes, AnOpenFaceContradictsNobody) {
   }
 }
 
-// A disc a layer of nodes thick, of which half is inside by the winding number, as beside a hole.
-TEST(SignVotes, OfAThinLayerTheFewerNodesAreInDoubt) {
+// A disc one layer of nodes thick; by the winding number half of it is inside, as beside a hole.
+TEST(SignVotes, MinorityNodesOfAThinLayerAreAmbiguous) {
   const TriangleMesh disc = box(Vec3(25, 25, 1.6), 5),
                      half = moved(box(Vec3(15, 25, 1.6)), Vec3(-5, 0, 0));
   const TriangleTree tree(disc);

@@ -6,11 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include "field/build/build_field.h"
-#include "field/build/distance_blocks.h"
+#include "field/construction/build_field.h"
+#include "field/construction/distance_blocks.h"
 #include "field/sampling/field_sampler.h"
 #include "geometry/mesh/shapes.h"
 #include "support/changed_mesh.h"
+#include "support/mesh_defects.h"
 #include "support/node_values.h"
 #include "support/soup.h"
 
@@ -49,11 +50,11 @@ Truth boxTruth(const Vec3& size) {
 
 struct Wrong {
   double points = 0; // fraction of random points farther than h sqrt(3)/2 from the surface
-  double nodes = 0;  // fraction of all nodes, those within the facets' sag left out
+  double nodes = 0;  // fraction of all nodes outside the facet error
   std::size_t ambiguous = 0;
 };
 
-constexpr double kFacetSag = 0.05; // voxels; more than the facets of any mesh below
+constexpr double kFacetSag = 0.05; // voxels; more than the facet error of any mesh below
 
 Wrong wrongSigns(const TriangleMesh& mesh, const Truth& truth, int resolution = 80,
                  unsigned seed = 1) {
@@ -112,7 +113,7 @@ TEST(Signs, NoneWrongNorAmbiguousOnClosedMeshes) {
   }
 }
 
-TEST(Signs, NoneWrongHoweverTheClosedMeshIsGiven) {
+TEST(Signs, NoneWrongForAnyInputFormOfAClosedMesh) {
   expectNone(inverted(ballMesh()), ballTruth);
   expectNone(soup(ballMesh()), ballTruth);
   expectNone(soup(inverted(torus(0.04, 0.015, 120, 60))), torusTruth);
@@ -123,7 +124,7 @@ TEST(Signs, NoneWrongHoweverTheClosedMeshIsGiven) {
 TEST(Signs, NoneWrongInTheUnionOfOverlappingBodies) {
   const Vec3 by(0.03, 0.01, 0.005);
   expectNone(joined(ballMesh(), moved(ballMesh(), by)), [by](const Vec3& p) {
-    // Inside both, the distance to the union's own surface does not matter: only its sign does.
+    // Inside both bodies the distance to the union's surface does not matter, only the sign does.
     return std::min(ballTruth(p), ballTruth(p - by));
   });
 }
@@ -157,7 +158,7 @@ TEST(Signs, FewWrongWithHolesInADoubledMesh) {
   }
 }
 
-// Connected closed faces are turned until they agree: nothing is left in doubt.
+// Connected closed faces are flipped until they agree, and no node is ambiguous.
 TEST(Signs, NoneWrongWithFlippedFaces) {
   const Vec3 size(0.1, 0.07, 0.03);
   for (double fraction : {0.05, 0.4, 0.5}) {
@@ -174,7 +175,7 @@ TEST(Signs, NoneWrongWithFlippedFaces) {
   }
 }
 
-// No edge says which of these faces is wrong: the inside is lost, but not in silence.
+// No edge shows which of these faces is wrong: the inside is lost, but it is reported.
 TEST(Signs, LooseFacesThatFaceAnywhereAreCounted) {
   const TriangleMesh loose = withShrunkenTriangles(ballMesh(), 0.002);
   EXPECT_EQ(wrongSigns(loose, ballTruth).points, 0);
@@ -216,7 +217,7 @@ TEST(Signs, FewWrongWithCracks) {
   }
 }
 
-// Faces 25 voxels wide: beside a flipped one every winding number is wrong, and is outvoted.
+// Faces are 25 voxels wide: beside a flipped one every winding number is wrong, and is outvoted.
 TEST(Signs, LargeFlippedFacesAreOutvoted) {
   FieldSpec spec;
   spec.resolution = 150;
@@ -225,7 +226,7 @@ TEST(Signs, LargeFlippedFacesAreOutvoted) {
   const auto sound = buildField(mesh, spec, progress).field;
   const auto flipped = buildField(withFlippedFaces(mesh, 0.05, 6), spec, progress).field;
   ASSERT_EQ(sound->blockCount(), flipped->blockCount());
-  EXPECT_EQ(sound->top, flipped->top);
+  EXPECT_EQ(sound->block_index, flipped->block_index);
   std::size_t different = 0;
   for (std::size_t slot = 0; slot < sound->blockCount(); ++slot) {
     const auto a = sound->distance[slot]->phi(), b = flipped->distance[slot]->phi();
@@ -234,14 +235,14 @@ TEST(Signs, LargeFlippedFacesAreOutvoted) {
   EXPECT_EQ(different, 0U);
 }
 
-// Thinner than a voxel: components of the two sides must not join through the plate.
-TEST(Signs, ThinPlatesHaveTwoOutsides) {
+// The wall is thinner than a voxel: components of its two sides must not join through it.
+TEST(Signs, ThinWallsHaveTwoOutsides) {
   for (double thickness : {0.003, 0.0011, 0.0003}) {
     const Vec3 size(0.1, 0.08, thickness);
     FieldSpec spec;
     spec.voxel = 0.001;
     for (double shift : {0.0, 0.0002, 0.00049}) {
-      // The plate at different places between the layers of nodes, which lie about its centre.
+      // The wall lies at different positions between the layers of nodes around its centre.
       Progress progress;
       const Vec3 off(0, 0, shift);
       const TriangleMesh mesh =
@@ -279,7 +280,7 @@ TEST(Signs, NodesOnTheSurfaceArePositiveZeros) {
       ++zeros;
       EXPECT_FALSE(std::signbit(phi));
     }
-  EXPECT_EQ(zeros, 17U * 17 * 6 - 12U * 17 + 8); // the nodes of a cube's skin, 17 a side
+  EXPECT_EQ(zeros, 17U * 17 * 6 - 12U * 17 + 8); // nodes on the surface of a cube, 17 a side
   EXPECT_EQ(built.report.ambiguous_signs, 0U);
 }
 
@@ -313,7 +314,7 @@ TEST(Signs, UnstoredBlocksAndCoarseNodesAreSigned) {
       }
 }
 
-TEST(Signs, AreTheSameEveryTime) {
+TEST(Signs, AreDeterministic) {
   const TriangleMesh mesh = withFlippedFaces(withHoles(ballMesh(), 12, 0.006, 7), 0.05, 8);
   FieldSpec spec;
   spec.resolution = 80;
@@ -321,7 +322,7 @@ TEST(Signs, AreTheSameEveryTime) {
   const BuiltField first = buildField(mesh, spec, progress);
   const BuiltField second = buildField(mesh, spec, progress);
   EXPECT_EQ(first.report.ambiguous_signs, second.report.ambiguous_signs);
-  EXPECT_EQ(first.field->top, second.field->top);
+  EXPECT_EQ(first.field->block_index, second.field->block_index);
   for (std::size_t slot = 0; slot < first.field->blockCount(); ++slot)
     ASSERT_EQ(first.field->distance[slot]->phi(), second.field->distance[slot]->phi());
 }

@@ -16,7 +16,7 @@ using namespace test;
 
 constexpr double kRadius = 0.05;
 
-TEST(SampledFunction, HoldsEveryNodeOfTheBandAndTheSignOfAllOthers) {
+TEST(SampledFunction, StoresEveryBandNodeAndTheSignOfAllOthers) {
   const FieldGrid grid = cubeGrid(kRadius, 64, 5);
   const Distance sphere = sphereDistance(kRadius);
   const SurfaceField field = sampleFunction(sphere, grid, 5);
@@ -28,14 +28,14 @@ TEST(SampledFunction, HoldsEveryNodeOfTheBandAndTheSignOfAllOthers) {
         if (std::abs(exact) <= 5)
           ASSERT_NEAR(stored, exact, 1e-6);
         else
-          ASSERT_EQ(stored, exact < 0 ? -kBeyondBand : kBeyondBand) << i << ' ' << j << ' ' << k;
+          ASSERT_EQ(stored, exact < 0 ? -kBackground : kBackground) << i << ' ' << j << ' ' << k;
       }
-  EXPECT_EQ(test::phiAt(field, -1, 0, 0), kBeyondBand);
-  EXPECT_EQ(test::phiAt(field, 0, 0, grid.nodes[2]), kBeyondBand);
+  EXPECT_EQ(test::phiAt(field, -1, 0, 0), kBackground);
+  EXPECT_EQ(test::phiAt(field, 0, 0, grid.nodes[2]), kBackground);
   EXPECT_EQ(field.faceAt(32, 32, 6), -1);
 }
 
-TEST(SampledFunction, StoresNoBlockWithoutABandNodeAndSkipsWhatItProvesFar) {
+TEST(SampledFunction, StoresNoBlockWithoutABandNodeAndSkipsDistantBlocks) {
   const FieldGrid grid = cubeGrid(kRadius, 150, 4);
   std::atomic<std::size_t> calls{0};
   const SurfaceField field = sampleFunction(
@@ -51,7 +51,7 @@ TEST(SampledFunction, StoresNoBlockWithoutABandNodeAndSkipsWhatItProvesFar) {
     EXPECT_TRUE(any);
   }
   std::size_t stored = 0;
-  for (const std::int32_t slot : field.top) stored += slot >= 0;
+  for (const std::int32_t slot : field.block_index) stored += slot >= 0;
   EXPECT_EQ(stored, field.blockCount());
   for (std::size_t slot = 0; slot < field.blockCount(); ++slot) {
     const auto& at = field.block_at[slot];
@@ -79,7 +79,7 @@ TEST(SampleLayer, GradientsAreCentralAndOneSidedBesideTheBandsEnd) {
     const float before = test::phiAt(*field, i - d[0], j - d[1], k - d[2]);
     const float here = test::phiAt(*field, i, j, k);
     const float after = test::phiAt(*field, i + d[0], j + d[1], k + d[2]);
-    const bool low = std::abs(before) < kBeyondBand, high = std::abs(after) < kBeyondBand;
+    const bool low = std::abs(before) < kBackground, high = std::abs(after) < kBackground;
     if (low && high) return (after - before) / 2;
     return high ? after - here : low ? here - before : 0.0F;
   };
@@ -95,27 +95,27 @@ TEST(SampleLayer, GradientsAreCentralAndOneSidedBesideTheBandsEnd) {
               field->sample[slot]
                   ->node[static_cast<std::size_t>((z * kSampleSide + y) * kSampleSide + x)];
           ASSERT_EQ(node.phi, test::phiAt(*field, i, j, k));
-          if (std::abs(node.phi) >= kBeyondBand) {
+          if (std::abs(node.phi) >= kBackground) {
             ASSERT_EQ(node.gx, 0);
             continue;
           }
           const Vec3 central(difference(i, j, k, 0), difference(i, j, k, 1),
                              difference(i, j, k, 2));
-          one_sided += std::abs(test::phiAt(*field, i + 1, j, k)) >= kBeyondBand;
+          one_sided += std::abs(test::phiAt(*field, i + 1, j, k)) >= kBackground;
           ASSERT_LT((Vec3(node.gx, node.gy, node.gz) - central).norm(), 0.2);
           ++nodes;
-          // Their neighbours across have nearly the same slopes, and a share in these.
+          // Neighbours across the crease have nearly the same slopes and contribute to these.
           central_ones += (Vec3(node.gx, node.gy, node.gz) - central).norm() < 5e-3;
         }
   }
   EXPECT_GT(one_sided, 100U);
-  // The rest lies about the ring in the middle of the tube, where the distance has a crease.
+  // The others lie near the circle in the middle of the tube, where the distance has a crease.
   EXPECT_GT(static_cast<double>(central_ones), 0.5 * static_cast<double>(nodes));
 }
 
-// Beside a crease a central difference is the slope of neither side; a node holds that of its own.
-// About an inner corner of three planes distance is the least of theirs.
-TEST(SampleLayer, BesideACreaseANodeHoldsTheSlopeOfItsOwnSide) {
+// Near a crease a central difference is the slope of neither side; a node holds that of its own.
+// Near an inner corner of three planes, the distance is the smallest of the three.
+TEST(SampleLayer, NodeBesideACreaseHoldsTheSlopeOfItsOwnSide) {
   const Eigen::Matrix3d normals =
       Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   const auto corner = [&](const Vec3& p) { return (normals.transpose() * p).minCoeff(); };
@@ -142,7 +142,7 @@ TEST(SampleLayer, BesideACreaseANodeHoldsTheSlopeOfItsOwnSide) {
       worst = std::max(worst, error);
     }
   ASSERT_GT(beside, 500U);
-  // The rest lies so near the crease that either side has as good a claim.
+  // The others lie so near the crease that either side is valid.
   EXPECT_GT(static_cast<double>(own), 0.9 * static_cast<double>(beside));
   EXPECT_LT(worst, 1.5);
 }
@@ -160,7 +160,7 @@ TEST(SampleLayer, FlagsExactlyTheCellsWhoseEightNodesAreStored) {
       bool all = true;
       for (int corner = 0; corner < 8; ++corner)
         all &= std::abs(test::phiAt(*field, i + (corner & 1), j + (corner >> 1 & 1),
-                                    k + (corner >> 2))) < kBeyondBand;
+                                    k + (corner >> 2))) < kBackground;
       ASSERT_EQ(field->sample[slot]->cellComplete(x, y, z), all) << i << ' ' << j << ' ' << k;
       ++(all ? complete : incomplete);
     }
@@ -197,8 +197,8 @@ TEST(LayerBytes, CountOnlyTheLayersThatExist) {
   EXPECT_EQ(field->bytes(), sum);
 }
 
-// Past the last block of the band there is its mark, not a surface.
-TEST(SampleLayer, HoldsWhatEachNodeHolds) {
+// The value beyond the last block of the band is the end mark, not a surface.
+TEST(SampleLayer, MatchesTheDataOfEachNode) {
   FieldGrid grid;
   grid.voxel = 1;
   grid.nodes = {17, 17, 33};
@@ -210,7 +210,7 @@ TEST(SampleLayer, HoldsWhatEachNodeHolds) {
       if (i > 16 || j > 16 || k > 32) continue;
       const SampleNode& node = field->sample[slot]->node[static_cast<std::size_t>(n)];
       ASSERT_EQ(node.phi, test::phiAt(*field, i, j, k)) << i << ' ' << j << ' ' << k;
-      if (std::abs(node.phi) < kBeyondBand) {
+      if (std::abs(node.phi) < kBackground) {
         ASSERT_EQ(Vec3(node.gx, node.gy, node.gz), Vec3(0, 0, 1)) << i << ' ' << j << ' ' << k;
       }
     }

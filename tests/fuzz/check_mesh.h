@@ -1,4 +1,4 @@
-// What the readers promise of every mesh that they return.
+// Checks the readers' contract for every mesh that they return.
 #pragma once
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ inline void checkMesh(const TriangleMesh& mesh) {
   for (const Triangle& t : mesh.triangles)
     for (const std::int32_t v : t)
       if (v < 0 || v >= vertices) std::abort();
-  // The report must cope with whatever was read.
+  // The report must handle any mesh that was read.
   const MeshReport report = inspect(mesh);
   if (report.non_finite + report.degenerate + report.duplicate > report.triangles) std::abort();
 }

@@ -1,4 +1,4 @@
-// Whatever the bytes: a table, or a FileError; and the same table where they come in pieces.
+// Any bytes give a table or a FileError, and the same table if they come in pieces or are written.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +13,10 @@
 
 namespace {
 
-// The number of rows, or none where the text is refused.
+// Returns the number of rows, or nothing if the text is rejected.
 std::optional<std::size_t> rowsIn(std::string_view text, std::size_t piece) {
+  std::string written = patina::csvHeader({"t [s]", "x [m]", "sigma [m]"});
+  std::size_t rows = 0;
   try {
     patina::CsvReader reader(
         [text, piece](char* buffer, std::size_t capacity) mutable {
@@ -23,14 +25,16 @@ std::optional<std::size_t> rowsIn(std::string_view text, std::size_t piece) {
           return count;
         },
         "fuzz", {{"t [s]", "x [m]"}, {"sigma [m]"}});
-    std::size_t rows = 0;
-    for (std::vector<double> row; reader.next(row); ++rows)
+    for (std::vector<double> row; reader.next(row); ++rows) {
       if (row.size() != 3) std::abort();
+      written += patina::csvRow(row);
+    }
     (void)reader.leftOut();
-    return rows;
   } catch (const patina::FileError&) {
     return std::nullopt;
   }
+  if (patina::parseCsv(written, "written", {"t [s]"}).rows.size() != rows) std::abort();
+  return rows;
 }
 
 } // namespace

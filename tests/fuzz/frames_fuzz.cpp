@@ -1,4 +1,4 @@
-// Whatever the bytes: a list of frames, or a FileError.
+// Any bytes give a list of frames or a FileError.
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// Whatever the bytes: a material map that reads back the same, or a FileError.
+// Any bytes give a material map that reads back the same, or a FileError.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "workspace/material_file.h"
+#include "workspace/paint_files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::optional<patina::MaterialMap> map;

@@ -1,4 +1,4 @@
-// Whatever the bytes: a mesh whose indices hold, or a FileError.
+// Any bytes give a mesh with valid indices, or a FileError.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -15,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const patina::TriangleMesh mesh = patina::parsePly(bytes, "fuzz", &warnings, &colors);
     patina::fuzz::checkMesh(mesh);
     patina::fuzz::checkColors(colors, mesh);
+    patina::fuzz::checkMesh(patina::parsePly(bytes, "fuzz", &warnings));
     patina::fuzz::checkWarnings(warnings);
   } catch (const patina::FileError&) {
   }

@@ -1,6 +1,6 @@
-// Whatever the bytes of a probe: samples in finite numbers, or an Error; the same from a serial
-// line in any pieces. To get past the check, each packet's is mended; the first byte says by which
-// way.
+// Any bytes of a probe give samples of finite numbers, or an Error, and the same from a serial line
+// in any pieces. The checksum of each packet is corrected so that parsing goes on; the first byte
+// selects the path.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -30,7 +30,7 @@ std::vector<patina::ProbeSample> decoded(const std::vector<std::vector<std::byte
   return samples;
 }
 
-void mend(std::byte* packet) {
+void repair(std::byte* packet) {
   std::uint32_t crc = ~0U;
   for (std::size_t i = 0; i < kProbePacket - 4; ++i) {
     crc ^= std::to_integer<std::uint32_t>(packet[i]);
@@ -51,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (way & 1) {
     for (std::size_t at = 0; at < bytes.size(); at += kProbePacket) {
       const std::size_t end = std::min(at + kProbePacket, bytes.size());
-      if (way & 2 && end - at == kProbePacket) mend(&bytes[at]);
+      if (way & 2 && end - at == kProbePacket) repair(&bytes[at]);
       packets.emplace_back(bytes.begin() + static_cast<std::ptrdiff_t>(at),
                            bytes.begin() + static_cast<std::ptrdiff_t>(end));
     }

@@ -6,6 +6,7 @@
 
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/shapes.h"
+#include "support/mesh_defects.h"
 
 namespace patina {
 namespace {
@@ -49,7 +50,7 @@ void expectAgreesWithTable(const TriangleMesh& mesh) {
               faces_of[v]);
 }
 
-TEST(Adjacency, OfClosedShapesHasNoGap) {
+TEST(Adjacency, HasNoGapOnClosedShapes) {
   for (const TriangleMesh& mesh : {icosphere(1, 8), torus(1, 0.3, 20, 10), vase()}) {
     expectAgreesWithTable(mesh);
     for (const auto& neighbours : adjacency(mesh).face_neighbours)
@@ -57,7 +58,7 @@ TEST(Adjacency, OfClosedShapesHasNoGap) {
   }
 }
 
-TEST(Adjacency, OfOpenFlippedCrackedAndNonManifoldMeshes) {
+TEST(Adjacency, HandlesOpenFlippedCrackedAndNonManifoldMeshes) {
   expectAgreesWithTable(sheet(1, 1, 5));
   expectAgreesWithTable(galleon(0.3));
   expectAgreesWithTable(withFlippedFaces(icosphere(1, 12), 0.3, 5));
@@ -65,7 +66,7 @@ TEST(Adjacency, OfOpenFlippedCrackedAndNonManifoldMeshes) {
   expectAgreesWithTable(withShrunkenTriangles(icosphere(1, 4), 0.1));
 }
 
-TEST(Adjacency, OfRandomTriangleSoupOverFewVertices) {
+TEST(Adjacency, HandlesRandomTriangleSoupOverFewVertices) {
   std::mt19937 random(11);
   for (int round = 0; round < 20; ++round) {
     TriangleMesh mesh;
@@ -86,8 +87,8 @@ TEST(Adjacency, SurfacesThatMeetInAVertexOnlyAreNotNeighbours) {
   EXPECT_EQ(adjacency(mesh).face_neighbours[0], (std::array<std::int32_t, 3>{-1, -1, -1}));
 }
 
-// Walking round such a hub for each face would take hours.
-TEST(Adjacency, OfAGreatFanTakesLinearTime) {
+// A walk around such a hub for each face would take hours.
+TEST(Adjacency, TakesLinearTimeForALargeFan) {
   constexpr std::int32_t kRim = 300000;
   TriangleMesh mesh;
   mesh.positions.assign(kRim + 1, Vec3::Zero());

@@ -1,4 +1,4 @@
-// What an atlas promises, over all pairs of faces; and a mesh that makes it hard.
+// Checks an atlas's contract over all pairs of faces, and makes a difficult mesh.
 #pragma once
 
 #include <cmath>
@@ -19,8 +19,8 @@ inline double cross(const Vec2& a, const Vec2& b) {
   return a[0] * b[1] - a[1] * b[0];
 }
 
-// How far two triangles lie apart along the best of their edges' normals; negative = they overlap
-// by so much. Both counter-clockwise.
+// Separation of two triangles along the best of their edges' normals; negative = depth of overlap.
+// Both are counter-clockwise.
 inline double separation(const Corners& a, const Corners& b) {
   double best = -std::numeric_limits<double>::infinity();
   for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)})
@@ -33,7 +33,7 @@ inline double separation(const Corners& a, const Corners& b) {
   return best;
 }
 
-// Chart of each face: those that share two corners in space and in the image.
+// Returns the chart of each face; faces of a chart share two corners in space and in the image.
 inline std::vector<int> chartsIn(const TriangleMesh& mesh, const CornerUvs& uvs) {
   std::vector<int> parent(uvs.size());
   for (std::size_t f = 0; f < parent.size(); ++f) parent[f] = static_cast<int>(f);
@@ -57,10 +57,10 @@ inline std::vector<int> chartsIn(const TriangleMesh& mesh, const CornerUvs& uvs)
   return parent;
 }
 
-// All that the header promises, over all pairs of faces. Every face must have area.
+// Checks the header's contract over all pairs of faces. Every face must have area.
 inline void expectAtlas(const TriangleMesh& mesh, const TextureLayout& layout, int size) {
   const CornerUvs& uvs = *layout.uvs;
-  ASSERT_TRUE(layout.made);
+  ASSERT_TRUE(layout.generated);
   ASSERT_EQ(uvs.size(), mesh.triangles.size());
   double largest = 0;
   std::vector<std::array<double, 2>> stretches;
@@ -86,7 +86,7 @@ inline void expectAtlas(const TriangleMesh& mesh, const TextureLayout& layout, i
     largest = std::max(largest, values[0]);
   }
   for (const auto& [most, least] : stretches) {
-    ASSERT_NEAR(most, largest, 1e-6 * largest); // all charts alike
+    ASSERT_NEAR(most, largest, 1e-6 * largest); // equal in all charts
     ASSERT_GT(least, 0.5 * largest);
   }
   const std::vector<int> charts = chartsIn(mesh, uvs);
@@ -103,8 +103,8 @@ inline void expectAtlas(const TriangleMesh& mesh, const TextureLayout& layout, i
       const bool same = charts[a] == charts[b];
       const double apart = boxes[a].exteriorDistance(boxes[b]);
       if (same ? apart > 0 : apart > 1.5 * gap) continue;
-      // Triangles of two charts lie at least as far apart as along the best axis; a corner against
-      // a corner may be further by up to the square's diagonal.
+      // Triangles of two charts are separated by at least that along the best axis; for two corners
+      // the distance may be larger by up to the square's diagonal.
       if (same) {
         ASSERT_GT(separation(uvs[a], uvs[b]), -1e-11) << "faces " << a << ' ' << b;
       } else {
@@ -128,7 +128,7 @@ inline double share(const TextureLayout& layout) {
   return sum;
 }
 
-// A strip between two radii that climbs: `turns` times round the axis.
+// A strip between two radii that climbs `turns` times around the axis.
 inline TriangleMesh spiralRamp(double turns, double inner, double pitch, double widening) {
   TriangleMesh mesh;
   const int steps = static_cast<int>(turns * 24);

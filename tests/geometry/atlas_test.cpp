@@ -1,4 +1,4 @@
-// Charts of an atlas: apart, embedded, little stretched.
+// Charts of an atlas are separate, embedded and little stretched.
 #include <algorithm>
 #include <map>
 #include <numbers>
@@ -9,13 +9,14 @@
 #include "geometry/atlas/texel_map.h"
 #include "geometry/atlas_checks.h"
 #include "geometry/mesh/shapes.h"
+#include "support/mesh_defects.h"
 
 namespace patina {
 namespace {
 
 using test::Corners, test::expectAtlas, test::share, test::spiralRamp;
 
-// Twice round one vertex before it closes.
+// A fan that runs twice around one vertex before it closes.
 TriangleMesh branchedDisc() {
   TriangleMesh mesh;
   mesh.positions.emplace_back(0, 0, 0);
@@ -28,8 +29,8 @@ TriangleMesh branchedDisc() {
   return mesh;
 }
 
-// Two sheets, of radius 1 and 2, cut along one line and joined crosswise there: neither border
-// meets the other or itself, but the ends of the line are wound round twice.
+// Two sheets of radius 1 and 2, cut along one line and joined crosswise there: neither boundary
+// meets the other or itself, but both run twice around the ends of the line.
 TriangleMesh crossedSheets() {
   constexpr int kLine = 2; // quads to either side of the middle
   TriangleMesh mesh;
@@ -37,7 +38,7 @@ TriangleMesh crossedSheets() {
     mesh.positions.emplace_back(x, y, z);
     return static_cast<std::int32_t>(mesh.positions.size()) - 1;
   };
-  std::map<std::array<int, 2>, std::int32_t> on_line; // by x and which pair of sides it joins
+  std::map<std::array<int, 2>, std::int32_t> on_line; // vertex by x and pair of sides
   for (const int radius : {8, 16}) {
     const int pair = radius == 8 ? 0 : 1;
     std::map<std::array<int, 2>, std::int32_t> others;
@@ -64,14 +65,14 @@ TriangleMesh crossedSheets() {
   return mesh;
 }
 
-// Two faces on one side of an edge that both run along it the same way.
+// Two faces on one side of an edge that both contain it in the same direction.
 TriangleMesh openBook() {
   return {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.5, 1, 0), Vec3(0.5, 1, 0.3)},
           {{0, 1, 2}, {0, 1, 3}},
           {}};
 }
 
-// A flat wheel of needles round one vertex.
+// A flat wheel of needles around one vertex.
 TriangleMesh wheel(int spokes) {
   TriangleMesh mesh;
   mesh.positions.emplace_back(0, 0, 0);
@@ -139,30 +140,30 @@ TEST(MadeAtlas, KeepsItsPromisesOnEveryKindOfMesh) {
     for (const int size : {128, 512}) {
       if (size == 128 && mesh.triangles.size() > 3000) continue;
       SCOPED_TRACE(std::string(name) + " at " + std::to_string(size));
-      const TextureLayout layout = madeAtlas(mesh, size);
+      const TextureLayout layout = generateAtlas(mesh, size);
       expectAtlas(mesh, layout, size);
     }
 }
 
 TEST(MadeAtlas, CutsASpiralOnceATurn) {
-  const TextureLayout layout = madeAtlas(spiralRamp(20, 0.3, 0.1, 0), 512);
+  const TextureLayout layout = generateAtlas(spiralRamp(20, 0.3, 0.1, 0), 512);
   EXPECT_GE(layout.charts, 20);
   EXPECT_LE(layout.charts, 48);
-  EXPECT_EQ(madeAtlas(spiralRamp(0.99, 0.3, 0.1, 0), 512).charts, 1);
+  EXPECT_EQ(generateAtlas(spiralRamp(0.99, 0.3, 0.1, 0), 512).charts, 1);
 }
 
 TEST(MadeAtlas, UsesFewChartsAndMuchOfTheImage) {
-  EXPECT_EQ(madeAtlas(sheet(1, 1, 10), 512).charts, 1);
-  EXPECT_GT(share(madeAtlas(sheet(1, 1, 10), 512)), 0.95);
-  EXPECT_EQ(madeAtlas(wheel(5000), 512).charts, 1);
-  const TextureLayout sphere = madeAtlas(icosphere(1, 20), 512);
+  EXPECT_EQ(generateAtlas(sheet(1, 1, 10), 512).charts, 1);
+  EXPECT_GT(share(generateAtlas(sheet(1, 1, 10), 512)), 0.95);
+  EXPECT_EQ(generateAtlas(wheel(5000), 512).charts, 1);
+  const TextureLayout sphere = generateAtlas(icosphere(1, 20), 512);
   EXPECT_LE(sphere.charts, 8);
   EXPECT_GT(share(sphere), 0.5);
-  EXPECT_GT(share(madeAtlas(galleon(1), 512)), 0.5);
-  EXPECT_GT(share(madeAtlas(vase(), 512)), 0.5);
+  EXPECT_GT(share(generateAtlas(galleon(1), 512)), 0.5);
+  EXPECT_GT(share(generateAtlas(vase(), 512)), 0.5);
 }
 
-TEST(MadeAtlas, CracksInTheIndicesAreNoBorder) {
+TEST(MadeAtlas, IndexCracksAreNoBorder) {
   TriangleMesh mesh = icosphere(1, 6), apart;
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
     for (int k = 0; k < 3; ++k) {
@@ -172,14 +173,15 @@ TEST(MadeAtlas, CracksInTheIndicesAreNoBorder) {
                                    static_cast<std::int32_t>(3 * f + 2)});
       apart.positions.push_back(mesh.corner(f, k));
     }
-  EXPECT_EQ(madeAtlas(apart, 256).charts, madeAtlas(mesh, 256).charts);
+  EXPECT_EQ(generateAtlas(apart, 256).charts, generateAtlas(mesh, 256).charts);
 }
 
-TEST(MadeAtlas, FacesThatTheMeshHoldsTwiceHaveOnePlace) {
+TEST(MadeAtlas, DuplicateFacesShareOnePlace) {
   const TriangleMesh mesh = icosphere(1, 10);
   TriangleMesh copy = mesh;
   for (Triangle& t : copy.triangles) t = {t[1], t[2], t[0]};
-  const TextureLayout once = madeAtlas(mesh, 256), twice = madeAtlas(joined(mesh, copy), 256);
+  const TextureLayout once = generateAtlas(mesh, 256),
+                      twice = generateAtlas(joined(mesh, copy), 256);
   EXPECT_EQ(twice.charts, once.charts);
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     const Corners& uv = (*once.uvs)[f];
@@ -188,18 +190,18 @@ TEST(MadeAtlas, FacesThatTheMeshHoldsTwiceHaveOnePlace) {
   }
 }
 
-TEST(MadeAtlas, FacesThatLookBothWaysHaveAPlaceForEither) {
+TEST(MadeAtlas, OppositeDuplicateFacesHaveSeparatePlaces) {
   for (const TriangleMesh& mesh : {sheet(1, 2, 8), icosphere(1, 6)}) {
     TriangleMesh back = mesh, both;
     for (Triangle& t : back.triangles) std::swap(t[1], t[2]);
-    // In turns, as those write who want a sheet seen from both sides.
+    // Faces alternate, as in files of sheets that are visible from both sides.
     both.positions = mesh.positions;
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
       both.triangles.push_back(mesh.triangles[f]);
       both.triangles.push_back(back.triangles[f]);
     }
-    const TextureLayout layout = madeAtlas(both, 256);
-    EXPECT_LE(layout.charts, madeAtlas(mesh, 256).charts + madeAtlas(back, 256).charts);
+    const TextureLayout layout = generateAtlas(both, 256);
+    EXPECT_LE(layout.charts, generateAtlas(mesh, 256).charts + generateAtlas(back, 256).charts);
     EXPECT_GT(share(layout), 0.4);
     for (std::size_t a = 0; a < both.triangles.size(); ++a)
       for (std::size_t b = a + 1; b < both.triangles.size(); ++b)
@@ -212,10 +214,10 @@ TEST(MadeAtlas, FacesWithoutAreaGetAPointOfTheSurface) {
   const std::size_t good = mesh.triangles.size();
   mesh.positions.emplace_back(Vec3(0, 0, 5)); // in no other face
   const auto lone = static_cast<std::int32_t>(mesh.positions.size() - 1);
-  mesh.triangles.push_back({24, 24, 23}); // the sheet's last corner, which no face has first
+  mesh.triangles.push_back({24, 24, 23}); // the sheet's last corner, which is no face's first one
   mesh.triangles.push_back({0, 1, 2});    // three in a row
   mesh.triangles.push_back({lone, lone, lone});
-  const TextureLayout layout = madeAtlas(mesh, 128);
+  const TextureLayout layout = generateAtlas(mesh, 128);
   for (std::size_t f = good; f < mesh.triangles.size(); ++f) {
     const Corners& point = (*layout.uvs)[f];
     EXPECT_EQ(point[0], point[1]);
@@ -233,33 +235,33 @@ TEST(MadeAtlas, FacesWithoutAreaGetAPointOfTheSurface) {
     EXPECT_EQ(own, mesh.triangles[f][0] != lone);
   }
   mesh.triangles.resize(good);
-  expectAtlas(mesh, madeAtlas(mesh, 128), 128);
+  expectAtlas(mesh, generateAtlas(mesh, 128), 128);
 }
 
 TEST(MadeAtlas, MeshesWithoutAnyAreaAndEmptyOnesAreFinite) {
-  EXPECT_TRUE(madeAtlas({}, 64).uvs->empty());
+  EXPECT_TRUE(generateAtlas({}, 64).uvs->empty());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const TriangleMesh mesh = {
       {Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(nan, 0, 0)}, {{0, 0, 1}, {0, 1, 2}, {1, 1, 1}}, {}};
-  const TextureLayout layout = madeAtlas(mesh, 64);
+  const TextureLayout layout = generateAtlas(mesh, 64);
   EXPECT_EQ(layout.charts, 0);
   for (const Corners& uv : *layout.uvs)
     for (const Vec2& p : uv) EXPECT_TRUE(p.allFinite());
 }
 
 TEST(MadeAtlas, TakesSizesFrom16To16384) {
-  EXPECT_THROW(madeAtlas(rightTriangle(), 15), std::invalid_argument);
-  EXPECT_THROW(madeAtlas(rightTriangle(), 16385), std::invalid_argument);
-  expectAtlas(rightTriangle(), madeAtlas(rightTriangle(), 16), 16);
-  expectAtlas(rightTriangle(), madeAtlas(rightTriangle(), 16384), 16384);
-  expectAtlas(box(Vec3(1, 1, 1)), madeAtlas(box(Vec3(1, 1, 1)), 32), 32);
+  EXPECT_THROW(generateAtlas(rightTriangle(), 15), std::invalid_argument);
+  EXPECT_THROW(generateAtlas(rightTriangle(), 16385), std::invalid_argument);
+  expectAtlas(rightTriangle(), generateAtlas(rightTriangle(), 16), 16);
+  expectAtlas(rightTriangle(), generateAtlas(rightTriangle(), 16384), 16384);
+  expectAtlas(box(Vec3(1, 1, 1)), generateAtlas(box(Vec3(1, 1, 1)), 32), 32);
 }
 
-// Far more pieces than the image has room for: the smallest share the texels of their neighbours.
+// More pieces than the image has texels: the smallest share the texels of their neighbours.
 TEST(MadeAtlas, StaysInTheImageWithMorePiecesThanTexels) {
   for (const TriangleMesh& mesh :
        {withShrunkenTriangles(icosphere(1, 30), 0.2), noisy(icosphere(1, 30), 0.2)}) {
-    const TextureLayout layout = madeAtlas(mesh, 32);
+    const TextureLayout layout = generateAtlas(mesh, 32);
     EXPECT_GE(layout.charts, 1);
     const TexelMap map = texelMap(*layout.uvs, 32, 32);
     for (const Corners& uv : *layout.uvs) {
@@ -275,18 +277,18 @@ TEST(MadeAtlas, StaysInTheImageWithMorePiecesThanTexels) {
   }
 }
 
-TEST(MadeAtlas, ChartsOfFacesBelowATexelHoldMany) {
+TEST(MadeAtlas, ChartsOfSubTexelFacesHoldMany) {
   const TriangleMesh mesh = icosphere(1, 80); // 128,000 faces, 10 a texel
-  const TextureLayout layout = madeAtlas(mesh, 128);
+  const TextureLayout layout = generateAtlas(mesh, 128);
   EXPECT_LE(layout.charts, 8);
   EXPECT_GT(share(layout), 0.4);
 }
 
 TEST(MadeAtlas, IsTheSameWithOneThread) {
   const TriangleMesh mesh = noisy(galleon(1), 1e-3);
-  const TextureLayout many = madeAtlas(mesh, 512);
+  const TextureLayout many = generateAtlas(mesh, 512);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const TextureLayout alone = madeAtlas(mesh, 512);
+  const TextureLayout alone = generateAtlas(mesh, 512);
   ASSERT_EQ(alone.uvs->size(), many.uvs->size());
   for (std::size_t f = 0; f < many.uvs->size(); ++f) ASSERT_EQ((*alone.uvs)[f], (*many.uvs)[f]);
 }

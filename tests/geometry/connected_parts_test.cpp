@@ -1,4 +1,4 @@
-#include "geometry/mesh/connected_parts.h"
+#include "geometry/mesh/holes.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 
 using test::moved;
 
-// Sheets lie above one another, at these heights; each edge is 1 long.
+// Parallel sheets at these heights; each edge is 1 long.
 TriangleMesh sheetsAt(const std::vector<double>& heights) {
   TriangleMesh all;
   for (const double z : heights) append(all, moved(sheet(4, 4, 4), Vec3(0, 0, z)));
@@ -24,7 +24,7 @@ TEST(ConnectedParts, AreJoinedUpToSevenTenthsOfTheReach) {
   EXPECT_EQ(connectedParts(sheetsAt({0, 0.3, 1.1, 1.4}), 1).parts.size(), 2U);
 }
 
-TEST(ConnectedParts, DoNotDependOnWhatIsFarAway) {
+TEST(ConnectedParts, DoNotDependOnDistantParts) {
   for (const std::vector<double>& heights :
        {std::vector{0.0, 0.3, 0.8, 1.1}, {0.0, 0.3, 1.1, 1.4}, {0.0, 0.3, 0.98}, {0.0, 0.65}}) {
     const TriangleMesh sheets = sheetsAt(heights);

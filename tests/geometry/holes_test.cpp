@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/mesh/inner_faces.h"
-#include "geometry/mesh/open_parts.h"
 #include "geometry/mesh/shapes.h"
+#include "geometry/sides/inner_faces.h"
+#include "geometry/sides/open_parts.h"
 #include "support/changed_mesh.h"
 #include "support/loose_triangles.h"
 
@@ -32,7 +32,7 @@ void expectHole(const Hole& hole, double area, const Vec3& centre, double tolera
   EXPECT_LE((hole.centre - centre).norm(), tolerance * std::sqrt(area));
 }
 
-TEST(Holes, OfFlatLoopsAreExact) {
+TEST(Holes, AreExactForFlatLoops) {
   const std::vector<Vec3> ell{{0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {1, 1, 1}, {1, 3, 1}, {0, 3, 1}};
   expectHole(spanned(ell), 4, Vec3(0.75, 1.25, 1), 1e-12);
   std::vector<Vec3> circle;
@@ -43,12 +43,12 @@ TEST(Holes, OfFlatLoopsAreExact) {
 }
 
 // Two squares that meet at a right angle.
-TEST(Holes, OfBentLoopsAreTheLeastTriangulation) {
+TEST(Holes, AreTheMinimalTriangulationOfNonPlanarLoops) {
   const std::vector<Vec3> bent{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}, {0, 1, 0}};
   expectHole(spanned(bent), 2, Vec3(0.5, 0.75, 0.25), 1e-12);
 }
 
-TEST(Holes, ThatTouchAreSeparate) {
+TEST(Holes, AreSeparateIfTheyTouch) {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-2, 0, 0}, {0, -2, 0}};
   const auto holes = holesOf(points, {{{0, 1}}, {{1, 2}}, {{2, 0}}, {{0, 3}}, {{3, 4}}, {{4, 0}}});
   ASSERT_EQ(holes.size(), 2U);
@@ -56,7 +56,7 @@ TEST(Holes, ThatTouchAreSeparate) {
   EXPECT_DOUBLE_EQ(holes[1].area, 0.5);
 }
 
-TEST(Holes, OfAnOpenBoxAndARoomAreTold) {
+TEST(Holes, AreReportedForAnOpenBoxAndARoom) {
   const TriangleMesh open =
       without(box(Vec3(0.1, 0.08, 0.06), 10), [](const Vec3& p) { return p.z() > 0.0299; });
   const TriangleMesh room = without(box(Vec3(4, 3, 2.5), 20), [](const Vec3& p) {
@@ -71,10 +71,10 @@ TEST(Holes, OfAnOpenBoxAndARoomAreTold) {
     ASSERT_EQ(door.holes.size(), 1U);
     expectHole(door.holes[0], 1.5 * 1.75, Vec3(2, 0, -0.375), 1e-9);
   }
-  EXPECT_TRUE(openParts(sheet(0.1, 0.1, 5)).holes.empty()); // nothing is closed over
+  EXPECT_TRUE(openParts(sheet(0.1, 0.1, 5)).holes.empty()); // no hole is closed
 }
 
-TEST(Holes, OfLooseTrianglesAreNotTheirGaps) {
+TEST(Holes, ExcludeGapsBetweenLooseTriangles) {
   const TriangleMesh open =
       without(box(Vec3(0.1, 0.08, 0.06), 40), [](const Vec3& p) { return p.z() > 0.0299; });
   const OpenParts found = openParts(loose(open, 5e-5), OpenSides::automatic, 1e-3);
@@ -83,19 +83,33 @@ TEST(Holes, OfLooseTrianglesAreNotTheirGaps) {
   expectHole(found.holes[0], 0.008, Vec3(0, 0, 0.03), 0.01);
 }
 
-TEST(InnerFaces, AreThoseThatTwoBodiesShare) {
+// A crack around a ball has a boundary as long as an equator, but what it spans is inside.
+TEST(Holes, ExcludeACrackAroundABody) {
+  const auto half = [](double up) {
+    return moved(without(icosphere(0.04, 20), [&](const Vec3& p) { return up * p.z() < 0; }),
+                 Vec3(0, 0, 2.5e-5 * up));
+  };
+  const TriangleMesh cracked = joined(half(1), half(-1));
+  EXPECT_FALSE(openParts(cracked).any());
+  EXPECT_TRUE(openParts(cracked).holes.empty());
+  const TriangleMesh cut =
+      without(icosphere(0.04, 20), [](const Vec3& p) { return p.z() > 0.02; });
+  EXPECT_EQ(openParts(cut).holes.size(), 1U);
+}
+
+TEST(InnerFaces, AreThoseSharedByTwoBodies) {
   const TriangleMesh one = box(Vec3::Ones(), 2), two = moved(one, Vec3(1, 0, 0));
   EXPECT_EQ(innerFaces(joined(one, two)).size(), 16U);
   EXPECT_TRUE(innerFaces(one).empty());
   EXPECT_TRUE(innerFaces(joined(one, inverted(one))).empty());
   EXPECT_TRUE(innerFaces(joined(one, moved(one, Vec3(1.1, 0, 0)))).empty());
-  // A sheet that is there twice and stands out of a body is seen from outside.
+  // A duplicate sheet that sticks out of a body is visible from outside.
   const TriangleMesh fin = moved(sheet(1, 1, 2), Vec3(1, 0, 0));
   EXPECT_TRUE(innerFaces(joined(one, joined(fin, inverted(fin)))).empty());
 }
 
-// Their edges form loops round the whole body by chance.
-TEST(Holes, BetweenLoosePiecesAreNone) {
+// The edges form loops around the whole body by chance.
+TEST(Holes, AreAbsentBetweenLoosePieces) {
   const double voxel = 0.001;
   for (const TriangleMesh& body : {torus(0.04, 0.015, 120, 60), icosphere(0.05, 40)})
     for (const double shift : {0.01, 0.1, 0.3})

@@ -38,7 +38,7 @@ void expectRefused(const std::string& format, const std::vector<Malformed>& file
       EXPECT_EQ(error.line(), malformed.line) << what;
       EXPECT_NE(what.find(malformed.cause), std::string::npos) << what;
       EXPECT_EQ(what.find('\n'), std::string::npos) << "one line";
-      // The folder of the project may have any name; what the reader says of the file may not.
+      // The project folder may have any name, so only the rest of the message is compared.
       for (const char c : what.substr(path.string().size()))
         EXPECT_TRUE(c >= 0x20 && c < 0x7f) << "printable";
     }
@@ -170,15 +170,15 @@ TEST(MalformedMesh, StlIsRefusedWithItsLineOrByte) {
       });
 }
 
-TEST(MalformedMesh, AFolderAMissingFileAndAForeignNameAreRefused) {
+TEST(MalformedMesh, FolderMissingFileAndUnknownEndingAreRejected) {
   EXPECT_THROW(readMesh(folder() / "obj" / "absent.obj"), FileError);
   EXPECT_THROW(readMesh(folder() / "obj" / "mesh.gltf"), FileError);
   EXPECT_THROW(readMesh(folder() / "obj"), FileError);
   EXPECT_THROW(writeMesh(std::filesystem::temp_directory_path() / "mesh.gltf", {}), FileError);
 }
 
-// Whatever the place where a file is cut, the answer is a mesh or one line, never worse; and a
-// count is never believed before the bytes are there.
+// A file cut at any byte gives a mesh or a one-line error. A count is not trusted before its bytes
+// are read.
 TEST(MalformedMesh, EveryTruncationOfEveryFormatIsHandled) {
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 \\\n -1/1\n";
   const std::string ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
@@ -199,10 +199,10 @@ TEST(MalformedMesh, EveryTruncationOfEveryFormatIsHandled) {
     EXPECT_NO_THROW(parse(bytes, "whole"));
     return count;
   };
-  // OBJ and PLY are whole without their last newline; OBJ already when "1" of "1/1" has come.
+  // OBJ and PLY are complete without the last newline; OBJ already when "1" of "1/1" is read.
   EXPECT_EQ(refusals(obj, [](auto... text) { parseObj(text...); }), obj.size() - 3);
   EXPECT_EQ(refusals(ply, [](auto... text) { parsePly(text...); }), ply.size() - 1);
-  // So is STL, also without its end, with or without the newline before it.
+  // STL too, also without its end, with or without the newline before it.
   EXPECT_EQ(refusals(stl, [](auto... text) { parseStl(text...); }), stl.size() - 3);
 }
 

@@ -1,4 +1,4 @@
-// Colours and pictures of a mesh file: each vertex and triangle has what the file gives it.
+// Colours and pictures of a mesh file on each vertex and triangle.
 #include <chrono>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ void expectNear(const std::vector<Rgba>& colors, const std::vector<Rgba>& wanted
     for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(colors[i][c], wanted[i][c], 1e-6) << i;
 }
 
-TEST(ObjColors, OfVerticesAreFractionsOrBytesWithOrWithoutOpacity) {
+TEST(ObjColors, VertexColorsAreFractionsOrBytesWithOrWithoutOpacity) {
   for (const char* text : {"v 0 0 0 1 0 0\nv 1 0 0 0 .2 1\nv 0 1 0 1 1 1\nf 1 2 3\n",
                            "v 0 0 0 255 0 0\nv 1 0 0 0 51 255\nv 0 1 0 255 255 255\nf 1 2 3\n",
                            "v 0 0 0 1 0 0 1\nv 1 0 0 0 .2 1 1\nv 0 1 0 1 1.001 1.9 1\nf 1 2 3\n"}) {
@@ -36,7 +36,7 @@ TEST(ObjColors, OfVerticesAreFractionsOrBytesWithOrWithoutOpacity) {
   }
 }
 
-TEST(ObjColors, OfSomeVerticesLeaveTheOthersWithoutAndSaySo) {
+TEST(ObjColors, PartialVertexColorsAreReported) {
   MeshColors colors;
   Warnings warnings;
   parseObj("v 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nf 1 2 3\n", "t", &warnings, &colors);
@@ -45,13 +45,13 @@ TEST(ObjColors, OfSomeVerticesLeaveTheOthersWithoutAndSaySo) {
   EXPECT_EQ(warnings[0], "2 of 3 vertices have no colour");
 }
 
-TEST(ObjColors, ThatAreNotFiniteAreNone) {
+TEST(ObjColors, AreAbsentIfNotFinite) {
   MeshColors colors;
   parseObj("v 0 0 0 nan 0 0\nv 1 0 0 1 0 0\nv 0 1 0 inf 0 0\nf 1 2 3\n", "t", nullptr, &colors);
   expectNear(colors.vertices, {kNone, kRed, kNone});
 }
 
-TEST(ObjColors, OfAPlainMeshAreAbsent) {
+TEST(ObjColors, AreAbsentForAPlainMesh) {
   MeshColors colors;
   parseObj("v 0 0 0 1\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n", "t", nullptr, &colors);
   EXPECT_TRUE(colors.empty());
@@ -61,7 +61,7 @@ class MaterialColors : public testing::Test {
  protected:
   void SetUp() override { folder_ = test::freshFolder("material colors"); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
-  // Two quads and a triangle, with a material each.
+  // Two quads and a triangle, each with its own material.
   MeshColors read(const std::string& library, bool mapped = true) {
     writeFileAtomically(folder_ / "a.mtl", library);
     const std::string text =
@@ -78,7 +78,7 @@ class MaterialColors : public testing::Test {
   Warnings warnings_;
 };
 
-TEST_F(MaterialColors, AreThoseOfTheFacesThatUseThem) {
+TEST_F(MaterialColors, ApplyToTheFacesThatUseThem) {
   const MeshColors colors =
       read("newmtl two\nKd 1 0 0\nnewmtl one\nKd 0 .5 2\nnewmtl three\nKd 1 1 1\n", false);
   const Rgba blue{0, 0.5F, 1, 1};
@@ -87,11 +87,11 @@ TEST_F(MaterialColors, AreThoseOfTheFacesThatUseThem) {
   EXPECT_TRUE(warnings_.empty());
 }
 
-TEST_F(MaterialColors, OfOneGreyAreNone) {
+TEST_F(MaterialColors, AreAbsentForASingleGrey) {
   EXPECT_TRUE(read("newmtl one\nKd .8 .8 .8\nnewmtl two\nKd .8 .8 .8\nnewmtl three\n").empty());
 }
 
-TEST_F(MaterialColors, PicturesAreOneAMaterialWithTheirPlaceAndFolder) {
+TEST_F(MaterialColors, HaveOnePicturePerMaterialWithItsFolder) {
   std::filesystem::create_directories(folder_ / "tex");
   writeFileAtomically(folder_ / "tex" / "a b.png", "");
   const MeshColors colors = read("newmtl one\nmap_Kd -s 2 3 1 -o .5 -clamp on tex\\a b.png\n"
@@ -108,7 +108,7 @@ TEST_F(MaterialColors, PicturesAreOneAMaterialWithTheirPlaceAndFolder) {
   EXPECT_TRUE(warnings_.empty());
 }
 
-TEST_F(MaterialColors, ThatNoLibraryHasAreNamed) {
+TEST_F(MaterialColors, AreNamedIfMissingFromAllLibraries) {
   const MeshColors colors = read("newmtl one\nKd 1 0 0\n");
   expectNear(colors.faces, {kRed, kRed, kNone, kNone, kNone});
   ASSERT_EQ(warnings_.size(), 1u);
@@ -116,7 +116,7 @@ TEST_F(MaterialColors, ThatNoLibraryHasAreNamed) {
                           "have no colour");
 }
 
-TEST_F(MaterialColors, NumbersThatAreNotFiniteAreSkipped) {
+TEST_F(MaterialColors, NonFiniteNumbersAreSkipped) {
   const MeshColors colors = read("newmtl one\nKd nan 0 1\nnewmtl two\r\nKd 1 0 0\r\nnewmtl three\n"
                                  "map_Kd -s inf 2 -o nan 1e308 a.png\nKd .5\n");
   expectNear(colors.faces, {kNone, kNone, kRed, kRed, {0.5F, 0.5F, 0.5F, 1}});
@@ -139,12 +139,12 @@ TEST_F(MaterialColors, PicturesBesideTheLibraryComeFirst) {
   EXPECT_NE(warnings[0].find("transparency is left out"), std::string::npos);
 }
 
-TEST_F(MaterialColors, BeneathAPictureThatCannotBeMappedAreKept) {
+TEST_F(MaterialColors, AreKeptIfThePictureCannotBeMapped) {
   expectNear(read("newmtl one\nKd 1 0 0\nmap_Kd a.png\n", false).faces,
              {kRed, kRed, kNone, kNone, kNone});
 }
 
-TEST_F(MaterialColors, OfVeryManyMaterialsAreReadQuickly) {
+TEST_F(MaterialColors, AreReadQuicklyForManyMaterials) {
   std::string library, text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (int i = 0; i < 40000; ++i) {
     library +=
@@ -176,7 +176,7 @@ std::string ply(const std::string& type, const std::string& names, const std::st
          values + "\n1 0 0 " + values + "\n0 1 0 " + values + "\n3 0 1 2\n";
 }
 
-TEST(PlyColors, OfVerticesAreReadFromEveryType) {
+TEST(PlyColors, VertexColorsAreReadFromEveryType) {
   const Rgba wanted{1, 0.2F, 0, 1};
   for (const auto& [type, names, values] : {std::tuple{"uchar", "R G B ", "255 51 0"},
                                             {"ushort", "R G B ", "65535 13107 0"},
@@ -190,7 +190,7 @@ TEST(PlyColors, OfVerticesAreReadFromEveryType) {
   }
 }
 
-TEST(PlyColors, OfFacesAreThoseOfEachTriangleOfAPolygon) {
+TEST(PlyColors, FaceColorsApplyToEachTriangleOfAPolygon) {
   MeshColors colors;
   Warnings warnings;
   const TriangleMesh mesh = parsePly(
@@ -210,7 +210,7 @@ TEST(PlyColors, OfFacesAreThoseOfEachTriangleOfAPolygon) {
   EXPECT_EQ(colors.pictures[1].file, "/x/b.png");
 }
 
-TEST(PlyColors, OfStripsAreNoneWhereverTheyStand) {
+TEST(PlyColors, AreAbsentForStrips) {
   const std::string faces =
       "element face 1\nproperty list uchar int vertex_indices\nproperty uchar "
       "red\nproperty uchar green\nproperty uchar blue\n";
@@ -225,7 +225,7 @@ TEST(PlyColors, OfStripsAreNoneWhereverTheyStand) {
   expectNear(last.faces, {kNone, kNone, kRed});
 }
 
-TEST(PlyColors, ThatAreNotKeptAreSaid) {
+TEST(PlyColors, AreReportedIfDropped) {
   Warnings warnings;
   MeshColors colors;
   std::string text = ply("uchar", "R G B ", "255 51 0");

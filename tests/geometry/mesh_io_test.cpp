@@ -1,4 +1,4 @@
-// Reading and writing meshes: what is understood, and that nothing is lost.
+// Reading and writing meshes: accepted forms, and no loss of data.
 #include <clocale>
 #include <cmath>
 #include <cstring>
@@ -15,6 +15,7 @@
 #include "geometry/mesh/shapes.h"
 #include "support/fresh_folder.h"
 #include "support/least_time.h"
+#include "support/mesh_defects.h"
 #include "support/shared_data.h"
 
 namespace patina {
@@ -68,7 +69,7 @@ TEST(ObjReader, ReadsTheSameWithEitherLineEndAndWithoutTheLast) {
   EXPECT_EQ(a.triangles.size(), 1u);
 }
 
-TEST(ObjReader, PassesOverWhatIsNoMesh) {
+TEST(ObjReader, SkipsOtherElements) {
   const TriangleMesh mesh = parseObj("\xEF\xBB\xBFmtllib a.mtl\nh 1 2\nunknown statement\n"
                                      "g caf\xC3\xA9\ns off\nusemtl x\nl 1 2\np 1\n\n   \n" +
                                          kTriangleObj + "vp 1\nf 1 2 3\n",
@@ -76,7 +77,7 @@ TEST(ObjReader, PassesOverWhatIsNoMesh) {
   EXPECT_EQ(mesh.triangles.size(), 1u);
 }
 
-TEST(ObjReader, FansPolygonsAndKeepsTheirTexture) {
+TEST(ObjReader, SplitsPolygonsAndKeepsTheirTexture) {
   std::string text;
   for (int i = 0; i < 5; ++i)
     text += "v " + std::to_string(i) + " " + std::to_string(i * i) + " 0\nvt 0." +
@@ -94,7 +95,7 @@ TEST(ObjReader, DropsTextureThatSomeFaceLacks) {
   EXPECT_TRUE(mesh.corner_uvs.empty());
 }
 
-TEST(ObjReader, AFaceMayNameVerticesThatFollow) {
+TEST(ObjReader, FaceMayUseLaterVertices) {
   EXPECT_EQ(parseObj("f 1 2 3\n" + kTriangleObj, "t").triangles.size(), 1u);
 }
 
@@ -113,11 +114,11 @@ struct CommaPunctuation : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
 };
 
-TEST(ObjReader, DoesNotListenToTheLocale) {
+TEST(ObjReader, IgnoresTheLocale) {
   const std::string c_before = std::setlocale(LC_NUMERIC, nullptr);
   const std::locale before =
       std::locale::global(std::locale(std::locale::classic(), new CommaPunctuation));
-  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) // where they are installed
+  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) // locales that may be installed
     if (std::setlocale(LC_NUMERIC, name)) break;
   const TriangleMesh mesh = parseObj("v 0.25 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "t");
   std::locale::global(before);
@@ -167,7 +168,7 @@ TEST(PlyReader, AsciiAndBothBinaryOrdersAgree) {
   EXPECT_LT((a.positions[17] - shape.positions[17]).norm(), 1e-6);
 }
 
-TEST(PlyReader, PassesOverListsAndElementsAnywhere) {
+TEST(PlyReader, SkipsUnknownListsAndElementsAnywhere) {
   const TriangleMesh mesh =
       parsePly("ply\r\nformat ascii 1.0\r\nobj_info x\r\nelement camera 1\r\nproperty float f\r\n"
                "property list int double k\r\nelement face 1\r\nproperty uchar red\r\n"
@@ -214,7 +215,7 @@ std::string stlOf(const TriangleMesh& mesh, const std::string& header) {
   return out;
 }
 
-TEST(StlReader, ABinaryHeaderMayBeginWithSolid) {
+TEST(StlReader, BinaryHeaderMayBeginWithSolid) {
   const TriangleMesh shape = icosphere(1, 3);
   const TriangleMesh mesh = parseStl(stlOf(shape, "solid in name only"), "t");
   EXPECT_EQ(mesh.triangles.size(), shape.triangles.size());
@@ -240,7 +241,7 @@ TEST(StlReader, WeldsTheTwoZerosAndNothingElse) {
   EXPECT_EQ(mesh.triangles[1], (Triangle{0, 2, 3}));
 }
 
-// The weld grows its table: many more vertices than it expected must still be told apart.
+// The weld grows its table: many more vertices than expected must stay distinct.
 TEST(StlReader, KeepsAllVerticesOfATriangleSoup) {
   const TriangleMesh soup = withShrunkenTriangles(icosphere(1, 20), 0.3);
   const TriangleMesh mesh = parseStl(stlOf(soup, ""), "t");
@@ -287,9 +288,9 @@ TEST_F(MeshFile, NonFiniteCoordinatesSurvive) {
   }
 }
 
-// In passes of the file's bytes, each read and taken into a product that waits for the one before:
-// 1.44, 0.84 and 1.19 as measured.
-PATINA_TIMED_TEST(MeshFileTiming, AMillionTrianglesAreReadInAFewPassesOfTheirBytes) {
+// Unit: one pass over the file's bytes, each multiplied into a product that depends on the last
+// one: 1.44, 0.84 and 1.19 measured.
+PATINA_TIMED_TEST(MeshFileTiming, MillionTrianglesAreReadInAFewPassesOfTheirBytes) {
   const TriangleMesh mesh = icosphere(0.05, 224);
   const auto path =
       std::filesystem::temp_directory_path() / ("patina_mesh_timing_" + std::to_string(getpid()));
@@ -301,7 +302,7 @@ PATINA_TIMED_TEST(MeshFileTiming, AMillionTrianglesAreReadInAFewPassesOfTheirByt
     const std::filesystem::path file = path.string() + ending;
     writeMesh(file, mesh);
     volatile std::uint64_t kept = 0;
-    const std::vector<double> seconds = test::leastSeconds(
+    const std::vector<double> seconds = test::minSeconds(
         {[&] { EXPECT_EQ(readMesh(file).triangles.size(), mesh.triangles.size()); },
          [&] {
            std::uint64_t product = 1;
@@ -332,7 +333,7 @@ TEST(RealMeshes, AreReadWhole) {
   }
 }
 
-// The twin of the above on our own shapes.
+// Counterpart of the above on our own shapes.
 TEST_F(MeshFile, ClosedAndHoledShapesKeepTheirReportThroughAFile) {
   for (const TriangleMesh& mesh :
        {vase(), galleon(0.3), withHoles(icosphere(0.05, 20), 4, 0.006, 1)}) {

@@ -1,4 +1,4 @@
-// Exact counts on meshes with known defects (the oracle is how they were made).
+// Exact counts on meshes with known defects (the construction is the oracle).
 #include <cmath>
 #include <limits>
 #include <random>
@@ -38,7 +38,7 @@ TEST(MeshReport, ClosedShapesAreWatertight) {
   }
 }
 
-TEST(MeshReport, CountsTheRimOfASheet) {
+TEST(MeshReport, CountsTheBoundaryOfASheet) {
   expectCounts(sheet(1, 1, 6), {.boundary = 24});
   EXPECT_FALSE(inspect(sheet(1, 1, 6)).watertight);
 }
@@ -85,7 +85,7 @@ TEST(MeshReport, CountsDuplicatesInAnyOrderAndOnlyTheLaterOnes) {
 TEST(MeshReport, CountsNonFiniteFacesAndTheHoleTheyLeave) {
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     TriangleMesh mesh = icosphere(1, 4);
-    mesh.positions.back()[1] = bad; // within a face: six triangles round it
+    mesh.positions.back()[1] = bad; // inside a face: six triangles around it
     expectCounts(mesh, {.non_finite = 6, .boundary = 6});
   }
 }
@@ -131,7 +131,7 @@ TriangleMesh jittered(TriangleMesh mesh, double most) {
   return mesh;
 }
 
-TEST(MeshReport, CornersWrittenOnceForEachFaceAreOne) {
+TEST(MeshReport, WeldsCornersThatAreDuplicatedPerFace) {
   for (const TriangleMesh& mesh : {icosphere(1, 5), torus(1, 0.2, 9, 7), box(Vec3(1, 2, 3), 3)}) {
     const TriangleMesh soup = withShrunkenTriangles(mesh, 0);
     EXPECT_TRUE(inspect(soup).watertight);
@@ -145,7 +145,7 @@ TEST(MeshReport, CornersWrittenOnceForEachFaceAreOne) {
   expectCounts(open, {.boundary = 3});
 }
 
-TEST(MeshReport, TellsBodiesApartWhoseCornersAreWrittenOnceForEachFace) {
+TEST(MeshReport, SeparatesBodiesWithCornersDuplicatedPerFace) {
   const TriangleMesh soup = withShrunkenTriangles(icosphere(1, 3), 0);
   const TriangleMesh two =
       joined(soup, transformed(soup, Eigen::Affine3d(Eigen::Translation3d(2.5, 0, 0))));
@@ -183,8 +183,8 @@ TEST(MeshReport, DoesNotWeldTheEndsOfShortEdges) {
   EXPECT_EQ(inspect(mesh).widest_crack, 0);
 }
 
-TEST(MeshReport, ACornerOnAnEdgeOfAnotherFaceClosesIt) {
-  // A box whose top is one pair of triangles while a side has a corner within that edge.
+TEST(MeshReport, CornerOnAnEdgeOfAnotherFaceClosesTheEdge) {
+  // A box whose top is one pair of triangles, while a side has a corner on that edge.
   TriangleMesh mesh = box(Vec3(1, 1, 1));
   const Triangle cut = mesh.triangles[0];
   const Vec3 middle = (mesh.corner(0, 0) + mesh.corner(0, 1)) / 2;
@@ -194,7 +194,7 @@ TEST(MeshReport, ACornerOnAnEdgeOfAnotherFaceClosesIt) {
   mesh.triangles.push_back({v, cut[1], cut[2]});
   expectCounts(mesh, {});
   EXPECT_TRUE(inspect(mesh).watertight);
-  mesh.triangles.push_back({cut[0], v, cut[1]}); // as a triangle without area, it changes nothing
+  mesh.triangles.push_back({cut[0], v, cut[1]}); // changes nothing, like a triangle without area
   expectCounts(mesh, {.degenerate = 1});
   EXPECT_TRUE(inspect(mesh).watertight);
   EXPECT_TRUE(inspect(withShrunkenTriangles(mesh, 0)).watertight);
@@ -218,12 +218,12 @@ TEST(MeshReport, SidesOfOneBoxThatAreDividedDifferentlyAreClosed) {
   EXPECT_EQ(report.components, 1u);
 }
 
-TEST(MeshReport, AnEmptyMeshIsNotWatertight) {
+TEST(MeshReport, EmptyMeshIsNotWatertight) {
   EXPECT_FALSE(inspect({}).watertight);
   EXPECT_EQ(inspect({}).components, 0u);
 }
 
-TEST(Cleaned, DropsWhatNoEngineCanUseAndSaysSo) {
+TEST(Cleaned, DropsAndReportsUnusableTriangles) {
   TriangleMesh mesh = icosphere(1, 4);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto u = static_cast<double>(t);
@@ -253,7 +253,7 @@ TEST(Cleaned, DropsWhatNoEngineCanUseAndSaysSo) {
     for (int k = 0; k < 3; ++k) ASSERT_EQ(clean.mesh.corner(t, k), mesh.corner(t + 2, k));
 }
 
-TEST(Cleaned, LeavesAGoodMeshAsItIs) {
+TEST(Cleaned, KeepsAValidMeshUnchanged) {
   const TriangleMesh mesh = vase();
   const CleanMesh clean = cleaned(mesh);
   EXPECT_EQ(clean.dropped, 0u);

@@ -36,7 +36,7 @@ TEST(MeshUnit, ScalesToMetres) {
   }
 }
 
-TEST(MeshUnit, WarnsOfSizesThatWereHardlyMeant) {
+TEST(MeshUnit, WarnsOfImplausibleSizes) {
   for (const double side : {0.999, 2001.0}) {
     const std::string warning = inMetres(box(Vec3::Constant(side)), MeshUnit::mm).warning;
     EXPECT_NE(warning.find("--unit"), std::string::npos) << side;
@@ -46,7 +46,7 @@ TEST(MeshUnit, WarnsOfSizesThatWereHardlyMeant) {
     EXPECT_EQ(inMetres(box(Vec3::Constant(side)), MeshUnit::mm).warning, "") << side;
 }
 
-TEST(MeshUnit, TheLikelyOneFitsAHand) {
+TEST(MeshUnit, SuggestionFitsAHand) {
   EXPECT_EQ(likelyUnit(110), MeshUnit::mm);
   EXPECT_EQ(likelyUnit(11), MeshUnit::cm);
   EXPECT_EQ(likelyUnit(0.11), MeshUnit::m);
@@ -57,7 +57,7 @@ TEST(MeshUnit, TheLikelyOneFitsAHand) {
 TEST(MeshUnit, FitIgnoresNonFiniteVerticesAndSurvivesAPoint) {
   TriangleMesh mesh = box(Vec3(4, 2, 1), 3);
   mesh.positions.push_back(Vec3::Constant(std::nan("")));
-  mesh.positions.push_back(Vec3::Constant(1e9)); // unused: it has no say
+  mesh.positions.push_back(Vec3::Constant(1e9)); // unused: it does not count
   const auto bad = static_cast<std::int32_t>(mesh.positions.size()) - 2;
   mesh.triangles.push_back({0, 1, bad});
   EXPECT_NEAR(inMetres(mesh, MeshUnit::fit).scale, 0.025, 1e-15);
@@ -68,8 +68,8 @@ TEST(MeshUnit, FitIgnoresNonFiniteVerticesAndSurvivesAPoint) {
   EXPECT_EQ(inMetres(point, MeshUnit::fit).mesh.positions[0], Vec3(7, 7, 7));
 }
 
-TEST(MeshUnit, WhatReachesTooFarIsRefusedAndWhatDoesNotIsNot) {
-  const double far = kFarthestCorner * (1 + 1e-9), near = kFarthestCorner * (1 - 1e-9);
+TEST(MeshUnit, RejectsCoordinatesBeyondTheLimitOnly) {
+  const double far = kMaxCoordinate * (1 + 1e-9), near = kMaxCoordinate * (1 - 1e-9);
   const auto reaching = [](double y) {
     TriangleMesh mesh = box(Vec3::Ones());
     mesh.positions[0].y() = y;

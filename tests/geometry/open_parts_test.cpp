@@ -1,4 +1,4 @@
-#include "geometry/mesh/open_parts.h"
+#include "geometry/sides/open_parts.h"
 
 #include <cmath>
 #include <functional>
@@ -8,10 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "geometry/io/mesh_io.h"
-#include "geometry/mesh/front_side.h"
 #include "geometry/mesh/shapes.h"
+#include "geometry/sides/pseudonormal_side.h"
 #include "geometry/tree/triangle_tree.h"
 #include "support/changed_mesh.h"
+#include "support/mesh_defects.h"
 #include "support/shared_data.h"
 
 namespace patina {
@@ -20,7 +21,7 @@ namespace {
 using test::inverted;
 using test::moved;
 
-// A sphere without what lies above z = height.
+// A sphere without its part above z = height.
 TriangleMesh bowl(double radius, double height) {
   TriangleMesh mesh = icosphere(radius, 20);
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
@@ -31,7 +32,7 @@ TriangleMesh bowl(double radius, double height) {
   return mesh;
 }
 
-TEST(OpenParts, ClosedMeshesHaveNone) {
+TEST(OpenParts, AreAbsentInClosedMeshes) {
   for (const TriangleMesh& mesh :
        {icosphere(0.05, 10), torus(0.04, 0.015, 40, 20), box(Vec3(0.1, 0.05, 0.02), 3),
         inverted(icosphere(0.05, 10)), joined(icosphere(0.05, 10), icosphere(0.05, 10)),
@@ -61,7 +62,7 @@ TEST(OpenParts, SheetsAndBowlsAreOpen) {
   EXPECT_EQ(openParts(one).triangles, 1U);
 }
 
-// To a winding number two sheets look like the upper face of one body and the lower one of another.
+// Two sheets give a winding number like the upper face of one body and the lower one of another.
 TEST(OpenParts, SheetsOneAboveTheOtherAreOpen) {
   for (const double gap : {0.0005, 0.005})
     for (const double size : {0.03, 0.06, 0.09, 0.1, 0.3}) {
@@ -76,7 +77,7 @@ TEST(OpenParts, SheetsOneAboveTheOtherAreOpen) {
     }
 }
 
-TEST(OpenParts, AreToldApartInOneMesh) {
+TEST(OpenParts, AreSeparatedInOneMesh) {
   const TriangleMesh ball = withHoles(icosphere(0.02, 20), 3, 0.003, 1);
   for (const double height : {0.0205, 0.05}) {
     const TriangleMesh mesh = joined(sheet(0.3, 0.3, 10), moved(ball, Vec3(0, 0, height)));
@@ -101,7 +102,7 @@ TEST(OpenParts, ScanWithHolesStaysClosed) {
   EXPECT_LT(openParts(mesh).triangles, mesh.triangles.size() / 100);
 }
 
-// A cone of many faces, its tip a vertex, open below: of unit height over the unit disc.
+// A cone of many faces with a vertex as its tip, open below: of unit height over the unit disc.
 TriangleMesh cone(int faces) {
   TriangleMesh mesh;
   mesh.positions.emplace_back(0, 0, 1);
@@ -116,7 +117,7 @@ TriangleMesh cone(int faces) {
 void expectSides(const TriangleMesh& mesh, const std::function<Side(const Vec3&)>& truth,
                  double reach) {
   const TriangleTree tree(mesh);
-  const FrontSide front(mesh, std::vector<std::uint8_t>(mesh.triangles.size(), 1));
+  const PseudonormalSide front(mesh, std::vector<std::uint8_t>(mesh.triangles.size(), 1));
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-reach, reach);
   for (int i = 0; i < 20000; ++i) {
@@ -125,9 +126,9 @@ void expectSides(const TriangleMesh& mesh, const std::function<Side(const Vec3&)
   }
 }
 
-TEST(FrontSide, IsThatOfAPlaneOverAndBeyondASquare) {
+TEST(PseudonormalSide, MatchesAPlaneOverAndBeyondASquare) {
   const auto truth = [](const Vec3& p) {
-    if (std::max(std::abs(p.x()), std::abs(p.y())) > 1) return Side::past;
+    if (std::max(std::abs(p.x()), std::abs(p.y())) > 1) return Side::beyond_boundary;
     return p.z() > 0 ? Side::front : Side::back;
   };
   for (const int cells : {1, 5}) expectSides(sheet(2, 2, cells), truth, 2);
@@ -135,12 +136,12 @@ TEST(FrontSide, IsThatOfAPlaneOverAndBeyondASquare) {
   expectSides(twice, truth, 2); // the first of two counts
 }
 
-// All about a sharp tip lies on its front, all below on its back: no face alone says so.
-TEST(FrontSide, IsTheSameAllAboutATip) {
+// Points around a sharp tip lie on its front, points below on its back: no single face decides it.
+TEST(PseudonormalSide, IsConstantAroundATip) {
   for (const int faces : {3, 7, 40}) {
     const TriangleMesh mesh = cone(faces);
     const TriangleTree tree(mesh);
-    const FrontSide front(mesh, std::vector<std::uint8_t>(mesh.triangles.size(), 1));
+    const PseudonormalSide front(mesh, std::vector<std::uint8_t>(mesh.triangles.size(), 1));
     std::mt19937 random(2);
     std::normal_distribution<double> normal;
     int above = 0;

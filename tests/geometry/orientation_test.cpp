@@ -21,7 +21,7 @@ TriangleMesh turned(TriangleMesh mesh, const std::vector<std::int32_t>& faces) {
   return mesh;
 }
 
-TEST(Orientation, SoundMeshesStayAsTheyAre) {
+TEST(Orientation, ValidMeshesStayUnchanged) {
   const TriangleMesh ball = icosphere(0.05, 6);
   for (const TriangleMesh& mesh :
        {ball, inverted(ball), box(Vec3(1, 2, 3), 4), torus(0.04, 0.015, 20, 10), sheet(0.1, 0.1, 5),
@@ -31,14 +31,14 @@ TEST(Orientation, SoundMeshesStayAsTheyAre) {
     EXPECT_TRUE(misorientedTriangles(mesh).empty());
 }
 
-TEST(Orientation, TheFewerFacesGiveWay) {
+TEST(Orientation, FlipsTheMinorityOfFaces) {
   const std::vector<std::int32_t> some{3, 4, 17, 40};
   for (const TriangleMesh& mesh :
        {icosphere(0.05, 4), inverted(icosphere(0.05, 4)), sheet(0.1, 0.1, 5)})
     EXPECT_EQ(misorientedTriangles(turned(mesh, some)), some);
 }
 
-TEST(Orientation, ClosedPartsFaceAsMostOfTheVolume) {
+TEST(Orientation, ClosedPartsFaceLikeMostOfTheVolume) {
   const TriangleMesh large = icosphere(0.05, 4);
   const TriangleMesh small = moved(icosphere(0.03, 4), Vec3(0.05, 0, 0));
   const auto first = static_cast<std::int32_t>(large.triangles.size());
@@ -49,15 +49,15 @@ TEST(Orientation, ClosedPartsFaceAsMostOfTheVolume) {
   }
 }
 
-// A cavity turns with the body that holds it.
+// A cavity flips with the body that contains it.
 TEST(Orientation, CavitiesStayCavities) {
   const TriangleMesh hollow = joined(icosphere(0.05, 4), inverted(icosphere(0.02, 4)));
   const TriangleMesh large = moved(icosphere(0.08, 4), Vec3(0.2, 0, 0));
   EXPECT_EQ(misorientedTriangles(joined(large, inverted(hollow))).size(), hollow.triangles.size());
 }
 
-TEST(Orientation, OneSidedBandsStayAsTheyAre) {
-  TriangleMesh band; // Moebius: the last pair of vertices meets the first swapped
+TEST(Orientation, OneSidedBandsStayUnchanged) {
+  TriangleMesh band; // Moebius strip: the last pair of vertices meets the first one swapped
   const int n = 12;
   for (int i = 0; i < n; ++i) {
     const double a = 2 * M_PI * i / n;

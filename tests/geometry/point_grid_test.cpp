@@ -1,4 +1,4 @@
-// Against all pairs, and against all points.
+// Tests the grid against all pairs and against all points.
 #include "geometry/mesh/point_grid.h"
 
 #include <map>
@@ -42,7 +42,7 @@ Pairs pairsByDistance(const std::vector<Vec3>& points, double reach) {
   return pairs;
 }
 
-TEST(PointGrid, FindsAllThatIsNearEachPointOnce) {
+TEST(PointGrid, FindsEachNearPointOnce) {
   for (const Vec3& size : {Vec3(1, 1, 1), Vec3(20, 0, 0), Vec3(0, 5, 5), Vec3(0.01, 0.01, 30)}) {
     const std::vector<Vec3> points = cloud(400, size, 7);
     for (const double reach : {0.02, 0.11})
@@ -51,7 +51,7 @@ TEST(PointGrid, FindsAllThatIsNearEachPointOnce) {
   }
 }
 
-TEST(PointGrid, EndsWhereItIsTold) {
+TEST(PointGrid, StopsOnRequest) {
   const std::vector<Vec3> points = cloud(400, {1, 1, 1}, 8);
   const PointGrid grid(points, 0.3);
   for (std::size_t n = 0; n < grid.size(); ++n) {
@@ -82,7 +82,7 @@ TEST(PointGrid, FindsEveryPointOfABoxAndFewOthers) {
   grid.forEachIn(Box3(Vec3(5, 5, 5), Vec3(6, 6, 6)), [](std::size_t) { FAIL() << "no point"; });
 }
 
-TEST(PointGrid, TakesOnePointManyInOnePlaceAndNone) {
+TEST(PointGrid, AcceptsOnePointManyCoincidentPointsAndNone) {
   EXPECT_TRUE(pairsOf({}, 1, 1).empty());
   EXPECT_TRUE(pairsOf({Vec3(1, 2, 3)}, 0, 0).empty());
   const std::vector<Vec3> same(10000, Vec3(1, 2, 3));

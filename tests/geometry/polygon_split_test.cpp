@@ -1,4 +1,4 @@
-// Polygons as triangles: the outline is kept, whatever its shape and first corner.
+// Polygons become triangles: the outline is kept for any shape and first corner.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -46,7 +46,7 @@ Outline spiral() {
           {4, 5}, {5, 5}, {5, 4}, {2, 4}, {2, 8}, {8, 8}, {8, 1}, {0, 1}};
 }
 
-// A square with a square hole, cut open along an edge that is run along twice.
+// A square with a square hole, cut open along an edge that occurs twice.
 Outline keyhole() {
   return {{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0}, {2, 2}, {2, 4}, {4, 4}, {4, 2}, {2, 2}};
 }
@@ -58,8 +58,8 @@ Outline randomStar(unsigned seed) {
   return outline;
 }
 
-// Runs from a point of the outline to a tip and back, as drawings that were edited do: from the
-// middle of an edge to either side, and from a corner along its edge, over it.
+// Spikes from a point of the outline to a tip and back, as in edited drawings: from the middle of
+// an edge to either side, and from a corner along its edge, over it.
 Outline spiked(const Outline& outline, std::size_t at, double length) {
   const Vec2 a = outline[at], b = outline[(at + 1) % outline.size()], along = (b - a).normalized();
   const Vec2 middle = (a + b) / 2, tip = middle + length * Vec2(along.y(), -along.x());
@@ -112,7 +112,7 @@ double areaOf(const Outline& outline) {
   return twice / 2;
 }
 
-bool contains(const Outline& outline, const Vec2& p) { // by the parity of crossings
+bool contains(const Outline& outline, const Vec2& p) { // parity of crossings
   bool inside = false;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
@@ -155,7 +155,7 @@ TEST(PolygonSplit, KeepsEveryOutlineFromEveryCorner) {
                                   mesh.corner(t, 2).head<2>()};
         EXPECT_GE(areaOf(triangle), -1e-12);
         sum += areaOf(triangle);
-        for (std::size_t k = 0; k < 3; ++k) // texture goes with its corner
+        for (std::size_t k = 0; k < 3; ++k) // each texture point stays with its corner
           EXPECT_EQ(mesh.corner_uvs[t][k], Vec2(mesh.triangles[t][k], 7));
       }
       EXPECT_NEAR(sum, areaOf(outline), 1e-9);
@@ -174,7 +174,7 @@ TEST(PolygonSplit, KeepsEveryOutlineFromEveryCorner) {
     }
 }
 
-TEST(PolygonSplit, KeepsTheAreaTurnedTheOtherWayAndFarFromTheOrigin) {
+TEST(PolygonSplit, KeepsTheAreaIfReversedAndFarFromTheOrigin) {
   Eigen::Affine3d placed =
       Eigen::Translation3d(4.5e6, -5.2e6, 300) * Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized());
   for (Outline outline : outlines()) {
@@ -211,7 +211,7 @@ double worstFold(const TriangleMesh& mesh) { // cosine; over pairs with a common
   return worst;
 }
 
-// The edge inside, as its two ends.
+// The inner edge by its two ends.
 std::pair<std::int32_t, std::int32_t> diagonalOf(const TriangleMesh& mesh) {
   std::vector<std::int32_t> ends;
   for (const std::int32_t v : mesh.triangles[0])
@@ -219,7 +219,7 @@ std::pair<std::int32_t, std::int32_t> diagonalOf(const TriangleMesh& mesh) {
   return std::minmax(ends.at(0), ends.at(1));
 }
 
-TEST(PolygonSplit, FoldsAQuadTheLeastWhateverItsFirstCorner) {
+TEST(PolygonSplit, FoldsAQuadTheLeastForAnyFirstCorner) {
   std::mt19937 random(11);
   for (int trial = 0; trial < 200; ++trial) {
     std::vector<Vec3> corners = inSpace(regular(4), Eigen::Affine3d::Identity());
@@ -239,7 +239,7 @@ TEST(PolygonSplit, FoldsAQuadTheLeastWhateverItsFirstCorner) {
   }
 }
 
-TEST(PolygonSplit, ASaddleOfEqualFoldsDoesNotDependOnItsFirstCorner) {
+TEST(PolygonSplit, SaddleOfEqualFoldsDoesNotDependOnItsFirstCorner) {
   const std::vector<Vec3> corners = {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(1, 1, 1), Vec3(0, 1, 0)};
   std::vector<std::pair<std::int32_t, std::int32_t>> found;
   for (std::int32_t first = 0; first < 4; ++first) {
@@ -277,7 +277,7 @@ TEST(PolygonSplit, CountsOutlinesThatCrossAndKeepsThemAsTriangles) {
   }
 }
 
-TEST(PolygonSplit, LeavesWhatHasNoAreaOrIsNotFinite) {
+TEST(PolygonSplit, KeepsOutlinesWithoutAreaOrNotFinite) {
   for (const std::vector<Vec3>& corners :
        {std::vector<Vec3>(5, Vec3(1, 2, 3)),
         std::vector<Vec3>{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(3, 0, 0)},
@@ -290,7 +290,7 @@ TEST(PolygonSplit, LeavesWhatHasNoAreaOrIsNotFinite) {
   }
 }
 
-TEST(PolygonSplit, ACapWithANotchIsReadWithoutALid) {
+TEST(PolygonSplit, NotchedCapIsReadWithoutALid) {
   const std::string obj =
       "v 40 20 0\nv 20 20 0\nv 20 40 0\nv 0 40 0\nv 0 0 0\nv 40 0 0\nv 40 20 20\nv 20 20 20\n"
       "v 20 40 20\nv 0 40 20\nv 0 0 20\nv 40 0 20\nf 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\n"

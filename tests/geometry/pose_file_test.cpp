@@ -1,4 +1,4 @@
-// A pose in a text file and in JSON: the same numbers are refused in both.
+// A pose in a text file and in JSON: both reject the same numbers.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -21,7 +21,7 @@ TEST(PoseFile, TextAndJsonReadBackBitForBit) {
   EXPECT_EQ(poseIn(Json::object().set("a", poseJson(pose)), "a").matrix(), pose.matrix());
 }
 
-TEST(PoseFile, WhatIsNoRigidMotionIsRefusedInTextAndInJsonByItsRow) {
+TEST(PoseFile, NonRigidMotionsAreRejectedByRowInTextAndJson) {
   struct Case {
     Eigen::Matrix4d pose;
     int row;

@@ -1,4 +1,4 @@
-// Numbers that a person types, against rotations composed by Eigen.
+// Typed numbers against rotations composed by Eigen.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace patina {
 namespace {
 
-TEST(PoseValues, TurnAboutXThenYThenZAndMoveInMillimetres) {
+TEST(PoseValues, RotateAboutXThenYThenZAndTranslateInMillimetres) {
   const PoseValues values{Vec3(1, -2, 3), Vec3(20, -35, 110)};
   const auto about = [&](int axis) {
     return Eigen::AngleAxisd(values.angles_deg[axis] * M_PI / 180, Vec3::Unit(axis));
@@ -30,7 +30,7 @@ TEST(PoseValues, ReadBackToTheSamePose) {
     ASSERT_LT((poseOf(back).matrix() - pose.matrix()).norm(), 1e-12);
     ASSERT_LT((back.angles_deg - values.angles_deg).norm(), 1e-7);
   }
-  for (const double y : {-90.0, 90.0}) { // x and z turn the same way there
+  for (const double y : {-90.0, 90.0}) { // x and z rotate about the same axis there
     const Pose pose = poseOf({Vec3::Zero(), Vec3(30, y, 50)});
     const PoseValues back = valuesOf(pose);
     EXPECT_EQ(back.angles_deg[2], 0);
@@ -38,17 +38,17 @@ TEST(PoseValues, ReadBackToTheSamePose) {
   }
 }
 
-// T-A09: the axes stay where they are while the turns are made.
-TEST(PoseValues, TurnAboutAxesThatAreFixed) {
+// T-A09: the axes stay fixed during the rotations.
+TEST(PoseValues, RotateAboutFixedAxes) {
   const Pose once = poseOf({Vec3::Zero(), Vec3(90, 0, 0)});
   EXPECT_EQ(once * Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ()));
-  // About x, y goes to z; about the fixed y, z then goes to x. Turned axes would leave it at z.
+  // About x, y goes to z; about the fixed y, z then goes to x. Rotated axes would leave it at z.
   const Pose twice = poseOf({Vec3::Zero(), Vec3(90, 90, 0)});
   EXPECT_EQ(twice * Vec3(Vec3::UnitY()), Vec3(Vec3::UnitX()));
   EXPECT_EQ(twice * Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitY()));
 }
 
-TEST(PoseValues, QuarterTurnsAndNothingAtAllAreExact) {
+TEST(PoseValues, QuarterTurnsAndTheIdentityAreExact) {
   EXPECT_TRUE(poseOf({}).matrix().isIdentity(0));
   const Eigen::Matrix3d quarter = poseOf({Vec3::Zero(), Vec3(0, 0, 90)}).linear();
   EXPECT_EQ(quarter(0, 0), 0);

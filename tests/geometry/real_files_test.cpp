@@ -1,4 +1,4 @@
-// Files as other programs write them: read, with one line for each thing that is not kept.
+// Files of other programs are read, with one line for each kind of dropped data.
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -35,14 +35,14 @@ Warnings warningsOfObj(const std::string& text, std::size_t triangles = 1) {
   return warnings;
 }
 
-TEST(RealObj, IndicesOfNormalsThatAreNotThereAreCounted) {
+TEST(RealObj, MissingNormalsAreCounted) {
   expectOne(warningsOfObj(kCorners + "f 1//1 2//1 3//1\n"), "line 5: 3 of the faces' corners name");
   expectOne(warningsOfObj(kCorners + "vn 0 0 1\nf 1//1 2//2 3//0\n"), "2 of the faces' corners");
   expectOne(warningsOfObj(kCorners + "f 1//-1 2//-2 3//99999999999999999999\n"), "3 of");
   EXPECT_TRUE(warningsOfObj(kCorners + "f 1//1 2//1 3//1\nvn 0 0 1\n").empty()); // they may follow
 }
 
-TEST(RealObj, IndicesOfTexturePointsThatAreNotThereDropTheTexture) {
+TEST(RealObj, MissingTexturePointsDropTheTexture) {
   Warnings warnings;
   const TriangleMesh mesh = parseObj(
       kCorners + "vt 0 0\nvt 1 0\nf 1/1 2/2 3/3\nf 1/1 2/2 4/0\nf 1/1 2/-1 4/-3\n", "t", &warnings);
@@ -51,18 +51,18 @@ TEST(RealObj, IndicesOfTexturePointsThatAreNotThereDropTheTexture) {
   expectOne(warnings, "line 7: 3 of the faces' corners name a texture point that is not there");
 }
 
-TEST(RealObj, TextureThatSomeFacesLackIsSaidToBeLeftOut) {
+TEST(RealObj, PartialTextureIsReportedAsDropped) {
   expectOne(warningsOfObj(kCorners + "vt 0 0\nf 1/1 2/1 3/1\nf 1 2 4\n", 2),
             "1 of 2 triangles have none");
 }
 
-TEST(RealObj, ColoursOfVerticesAreSaidToBeLeftOut) {
+TEST(RealObj, VertexColorsAreReportedAsDropped) {
   expectOne(warningsOfObj("v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n"),
             "the colours of its vertices are left out");
   EXPECT_TRUE(warningsOfObj("v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nf 1 2 3\n").empty()); // weights
 }
 
-TEST(RealObj, APointCloudIsCalledOne) {
+TEST(RealObj, PointCloudIsNamedAsSuch) {
   try {
     parseObj(kCorners, "t");
     FAIL();
@@ -96,14 +96,14 @@ class Materials : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(Materials, PicturesOfWhatIsUsedAreNamedWhereOnlyTheSurfaceIsRead) {
+TEST_F(Materials, UsedPicturesAreNamedIfOnlyTheSurfaceIsRead) {
   write("a.mtl", "newmtl other\nmap_Kd unused.png\nnewmtl skin\nKd 1 1 1\nmap_Kd a b.png\n");
   write("a b.png", "");
   expectOne(read("cup.obj", "mtllib a.mtl\n" + face_),
             "a picture is left out, 'a b.png': only the surface is read here");
 }
 
-TEST_F(Materials, FoldersOptionsAndOtherSystemsNamesAreUnderstood) {
+TEST_F(Materials, FoldersOptionsAndNamesOfOtherSystemsAreRead) {
   const auto pictureOf = [&](const std::string& file, const std::string& text) {
     write(file, text);
     MeshColors colors;
@@ -119,7 +119,7 @@ TEST_F(Materials, FoldersOptionsAndOtherSystemsNamesAreUnderstood) {
   EXPECT_EQ(pictureOf("b.obj", "mtllib a.none b.mtl\n" + face_), folder_ / "tex/u.png");
 }
 
-TEST_F(Materials, ColoursAndMissingFilesAreSaid) {
+TEST_F(Materials, ColorsAndMissingFilesAreReported) {
   expectOne(read("a.obj", "mtllib none.mtl\n" + face_), "'none.mtl' cannot be read");
   write("grey.mtl", "newmtl skin\nKd 0.8 0.8 0.8\n");
   EXPECT_TRUE(read("b.obj", "mtllib grey.mtl\n" + face_).empty());
@@ -150,7 +150,7 @@ TEST(RealPly, StripsAreTrianglesOfAlternatingDirection) {
   EXPECT_EQ(upwards, 3);
 }
 
-TEST(RealPly, StripsAreJoinedByRepeatedVerticesAndStandBesideFaces) {
+TEST(RealPly, StripsAreJoinedByRepeatedVerticesAndOccurBesideFaces) {
   EXPECT_EQ(
       parsePly(plyOf("element vertex 5\n", kStrips, kFive + "8 0 1 2 2 3 3 1 4\n"), "t").triangles,
       (std::vector<Triangle>{{0, 1, 2}, {1, 3, 4}}));
@@ -163,7 +163,7 @@ TEST(RealPly, StripsAreJoinedByRepeatedVerticesAndStandBesideFaces) {
     EXPECT_THROW(parsePly(plyOf("element vertex 5\n", kStrips, kFive + strip), "t"), FileError);
 }
 
-TEST(RealPly, APointCloudIsCalledOne) {
+TEST(RealPly, PointCloudIsNamedAsSuch) {
   for (const std::string& middle :
        {std::string(), std::string("element face 0\nproperty list uchar int vertex_indices\n")})
     try {
@@ -176,7 +176,7 @@ TEST(RealPly, APointCloudIsCalledOne) {
     }
 }
 
-TEST(RealPly, ColoursAndPicturesAreSaidToBeLeftOut) {
+TEST(RealPly, ColorsAndPicturesAreReportedAsDropped) {
   Warnings warnings;
   parsePly("ply\nformat ascii 1.0\ncomment TextureFile my skin.png\nelement vertex 3\n"
            "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float x\n"
@@ -205,7 +205,7 @@ TEST(RealPly, LinesMayEndInCarriageReturns) {
   EXPECT_EQ(parsePly(binary, "t").triangles.size(), 1u);
 }
 
-TEST(RealPly, APolygonThatIsNotConvexKeepsItsOutlineAndTexture) {
+TEST(RealPly, NonConvexPolygonKeepsItsOutlineAndTexture) {
   const TriangleMesh mesh =
       parsePly(plyOf("element vertex 4\n",
                      "element face 1\nproperty list uchar int vertex_indices\n"
@@ -240,7 +240,7 @@ Warnings warningsOfStl(const std::string& bytes, std::size_t triangles) {
   return warnings;
 }
 
-TEST(RealStl, BytesAfterTheLastTriangleAreLeftOut) {
+TEST(RealStl, BytesAfterTheLastTriangleAreIgnored) {
   const TriangleMesh cube = box(Vec3(1, 1, 1));
   for (const char* header : {"made", "solid in name only"}) {
     const std::string whole = binaryStl(cube, 12, header);
@@ -253,7 +253,7 @@ TEST(RealStl, BytesAfterTheLastTriangleAreLeftOut) {
   }
 }
 
-TEST(RealStl, ACountThatWasNeverFilledInIsTakenFromTheSize) {
+TEST(RealStl, MissingCountIsTakenFromTheSize) {
   const TriangleMesh cube = box(Vec3(1, 1, 1));
   expectOne(warningsOfStl(binaryStl(cube, 0), 12), "the header says 0 triangles");
   expectOne(warningsOfStl(binaryStl(cube, 0xffffffff), 12), "read as 12");
@@ -261,7 +261,7 @@ TEST(RealStl, ACountThatWasNeverFilledInIsTakenFromTheSize) {
   EXPECT_THROW(parseStl(binaryStl({}, 0), "t"), FileError);
 }
 
-TEST(RealStl, ColoursAreSaidToBeLeftOut) {
+TEST(RealStl, ColorsAreReportedAsDropped) {
   expectOne(warningsOfStl(binaryStl(box(Vec3(1, 1, 1)), 12, "COLOR=\1\2\3\4"), 12), "colours");
   std::string own = binaryStl(box(Vec3(1, 1, 1)), 12);
   own[84 + 50 - 1] = '\x80'; // VisCAM: the attribute of a triangle says that it is a colour
@@ -271,7 +271,7 @@ TEST(RealStl, ColoursAreSaidToBeLeftOut) {
 const std::string kFacet = " facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
                            "   vertex 0 1 0\n  endloop\n endfacet\n";
 
-TEST(RealStl, AsciiIsReadAsManyProgramsWriteIt) {
+TEST(RealStl, AsciiOfManyProgramsIsRead) {
   const std::string text = "solid a\n" + kFacet + "endsolid a\n";
   EXPECT_TRUE(warningsOfStl(withCarriageReturns(text), 1).empty());
   std::string spaced = text, upper = text;
@@ -299,7 +299,7 @@ TEST(RealStl, AsciiOfOneLineWithColorsOrWithoutItsEndIsRead) {
   expectOne(warningsOfStl(colored, 2), "colours of its triangles");
 }
 
-TEST(RealStl, WhatFollowsTheLastSolidIsLeftOut) {
+TEST(RealStl, TextAfterTheLastSolidIsIgnored) {
   const std::string text = "solid a\n" + kFacet + "endsolid a\n";
   for (const char* rest : {"garbage\n", "\x1a", "color 1 0 0\n", "endsolid\n"})
     expectOne(warningsOfStl(text + rest, 1), "line 10: what follows the last solid is left out");

@@ -6,6 +6,7 @@
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/shapes.h"
 #include "support/constants.h"
+#include "support/mesh_defects.h"
 
 namespace patina {
 namespace {
@@ -46,19 +47,19 @@ TEST(Shapes, BoxAndSheetAreExact) {
   EXPECT_EQ(faceNormal(flat, 17), Vec3(0, 0, 1));
 }
 
-TEST(Shapes, VaseIsAClosedThinWallOfThePapersSize) {
+TEST(Shapes, VaseIsAClosedThinWallOfThePublishedSize) {
   const TriangleMesh mesh = vase();
   EXPECT_EQ(mesh.triangles.size(), 4800u); // K25
   const MeshReport report = inspect(mesh);
   EXPECT_TRUE(report.watertight);
   EXPECT_EQ(report.degenerate, 0u);
-  // A wall of 4 mm: the volume is near to half the area times the wall.
+  // For a wall of 4 mm the volume is close to half the area times the wall.
   EXPECT_GT(volume(mesh), 0);
   EXPECT_NEAR(volume(mesh) / (area(mesh) / 2 * 0.004), 1, 0.08);
   EXPECT_EQ(vase(0.1, 0.002, 30, 10).triangles.size(), 1200u);
 }
 
-TEST(Shapes, GalleonIsOpenAndNonManifoldAndOfThePapersSize) {
+TEST(Shapes, GalleonIsOpenNonManifoldAndOfThePublishedSize) {
   const TriangleMesh mesh = galleon(0.3);
   EXPECT_EQ(mesh.triangles.size(), 8794u); // K25
   const MeshReport report = inspect(mesh);
@@ -81,11 +82,11 @@ TEST(Shapes, ImpossibleSizesAreRefused) {
   EXPECT_THROW(galleon(std::nan("")), std::invalid_argument);
 }
 
-TEST(Defects, ShrunkenTrianglesLoseTheirShareOfTheArea) {
+TEST(Defects, ShrunkTrianglesLoseTheirShareOfTheArea) {
   const TriangleMesh mesh = icosphere(1, 6);
   const TriangleMesh cracked = withShrunkenTriangles(mesh, 0.01);
   EXPECT_NEAR(area(cracked) / area(mesh), 0.99 * 0.99, 1e-12);
-  // The report joins corners that are so near, and says how wide the cracks are.
+  // The report welds such near corners and states the width of the cracks.
   const MeshReport report = inspect(cracked);
   EXPECT_EQ(report.boundary_edges, 0u);
   EXPECT_GT(report.widest_crack, 0);
@@ -105,7 +106,7 @@ TEST(Defects, FlippedFacesAreAboutTheirShareAndRepeatable) {
   EXPECT_NEAR(volume(withFlippedFaces(mesh, 1, 7)), -volume(mesh), 1e-12);
 }
 
-TEST(Defects, HolesLeaveARimAndNoUnusedVertex) {
+TEST(Defects, HolesLeaveABoundaryAndNoUnusedVertex) {
   const TriangleMesh mesh = icosphere(1, 30);
   const TriangleMesh holed = withHoles(mesh, 12, 0.08, 3);
   EXPECT_LT(holed.triangles.size(), mesh.triangles.size());
@@ -115,7 +116,7 @@ TEST(Defects, HolesLeaveARimAndNoUnusedVertex) {
     for (const std::int32_t v : t) used[static_cast<std::size_t>(v)] = true;
   EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
   EXPECT_EQ(withHoles(mesh, 0, 0.08, 3).triangles.size(), mesh.triangles.size());
-  // The smallest hole is still one: the faces round one vertex.
+  // The smallest hole is the faces around one vertex.
   EXPECT_LE(withHoles(mesh, 1, 0, 3).triangles.size(), mesh.triangles.size() - 5);
 }
 
@@ -133,14 +134,14 @@ TEST(TriangleMesh, MeasuresAreTheSameFarFromTheOrigin) {
   EXPECT_NEAR(area(far), area(mesh), 1e-8);
 }
 
-TEST(TriangleMesh, AReflectionKeepsOutsideOutside) {
+TEST(TriangleMesh, ReflectionKeepsTheOutsideOutside) {
   Eigen::Affine3d mirror = Eigen::Affine3d::Identity();
   mirror.linear().diagonal() = Vec3(-2, 1, 1);
   const TriangleMesh mesh = icosphere(1, 5);
   EXPECT_NEAR(volume(transformed(mesh, mirror)), 2 * volume(mesh), 1e-12);
 }
 
-TEST(TriangleMesh, NormalOfTinyAndOfDegenerateFaces) {
+TEST(TriangleMesh, NormalsOfTinyAndDegenerateFacesAreFinite) {
   TriangleMesh mesh;
   mesh.positions = {Vec3(0, 0, 0), Vec3(1e-180, 0, 0), Vec3(0, 1e-180, 0)};
   mesh.triangles = {{0, 1, 2}, {0, 1, 1}, {2, 2, 2}};

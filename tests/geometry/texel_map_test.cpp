@@ -23,7 +23,7 @@ double cross2(const Vec2& a, const Vec2& b) {
   return a[0] * b[1] - a[1] * b[0];
 }
 
-// Strictly inside, with room to both sides for rounding.
+// True if strictly inside, with a margin for rounding.
 bool insideBy(const Corners& uv, const Vec2& p, double margin) {
   double sign = cross2(uv[1] - uv[0], uv[2] - uv[0]) < 0 ? -1 : 1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -46,8 +46,8 @@ double distanceTo(const Corners& uv, const Vec2& p) {
   return best;
 }
 
-// A grid of n x n quads over [low, high]^2 whose inner points are moved at random; below a shake of
-// 1/4 no face turns over.
+// A grid of n x n quads over [low, high]^2 whose inner points are moved at random; below a shift of
+// 1/4 no face flips.
 CornerUvs shakenGrid(int n, double low, double high, unsigned seed, double shake) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> move(-shake, shake);
@@ -77,8 +77,8 @@ CornerUvs shakenGrid(int n, double low, double high, unsigned seed, double shake
   return uvs;
 }
 
-// How many faces cover each centre: every one on a map of its own, over a face that covers the
-// whole image and takes the rest, gutters too.
+// Number of faces that cover each centre: each on its own map, over a face that covers the whole
+// image and takes the rest, gutters too.
 std::vector<int> coverage(const CornerUvs& uvs, int size) {
   std::vector<int> count(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0);
   for (const Corners& uv : uvs) {
@@ -97,12 +97,12 @@ TEST(TexelMap, CoversEveryCentreOfACutSquareOnce) {
     }
 }
 
-// T-K16b at its worst: edges and corners that pass through centres, needles among them.
+// T-K16b in the worst case: edges and corners pass through centres, needles among them.
 TEST(TexelMap, SharesNoCentreOnAnEdgeOrCorner) {
   const int size = 16;
   std::mt19937 random(3);
   for (int round = 0; round < 60; ++round) {
-    // A fan round a texel's centre; its rim runs through other centres.
+    // A fan around a texel's centre; its boundary passes through other centres.
     const Vec2 hub = centre(7, 8, size, size);
     std::vector<Vec2> rim = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     for (int k = 0; k < 12; ++k) {
@@ -181,23 +181,23 @@ TEST(TexelMap, LowestFaceOwnsWhereMirroredCoordinatesOverlap) {
   }
 }
 
-TEST(TexelMap, AFaceSmallerThanATexelStillHasOne) {
+TEST(TexelMap, FaceSmallerThanATexelHasOneTexel) {
   const Vec2 at(10.1 / 32, 5.9 / 32);
   const CornerUvs uvs = {{at, at + Vec2(1e-4, 0), at + Vec2(0, 1e-4)}};
   EXPECT_EQ(texelMap(uvs, 32, 32).ownerAt(10, 5), 0);
 }
 
-TEST(TexelMap, FacesWithoutAreaGiveWay) {
+TEST(TexelMap, FacesWithoutAreaYieldToOthers) {
   const CornerUvs uvs = {{Vec2(0.5, 0.5), Vec2(0.5, 0.5), Vec2(0.5, 0.5)},
                          {Vec2(0.5, 0.5), Vec2(0.8, 0.5), Vec2(0.5, 0.8)},
                          {Vec2(0.1, 0.1), Vec2(0.1, 0.1), Vec2(0.1, 0.1)}};
   const TexelMap map = texelMap(uvs, 32, 32);
   for (const std::int32_t owner : map.owner) ASSERT_NE(owner, 0);
   EXPECT_EQ(map.ownerAt(16, 16), 1);
-  EXPECT_EQ(map.ownerAt(3, 3), 2); // nobody else shows it
+  EXPECT_EQ(map.ownerAt(3, 3), 2); // shown by no other face
 }
 
-TEST(TexelMap, PassesOverCoordinatesThatAreNotFinite) {
+TEST(TexelMap, SkipsNonFiniteCoordinates) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
   const Corners good = {Vec2(0.2, 0.2), Vec2(0.8, 0.2), Vec2(0.2, 0.8)};
@@ -212,7 +212,7 @@ TEST(TexelMap, PassesOverCoordinatesThatAreNotFinite) {
 }
 
 TEST(TexelMap, IsTheSameWithOneThread) {
-  const CornerUvs uvs = *madeAtlas(icosphere(1, 12), 300).uvs;
+  const CornerUvs uvs = *generateAtlas(icosphere(1, 12), 300).uvs;
   const TexelMap many = texelMap(uvs, 300, 300);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(texelMap(uvs, 300, 300).owner, many.owner);
@@ -263,7 +263,7 @@ Placed randomPlaced(std::mt19937& random, double stretch) {
   return face;
 }
 
-// No texel is missed, whatever the stretch; and the box is not simply the whole face.
+// No texel is missed under any stretch, and the box is smaller than the whole face.
 TEST(TexelsNear, HoldsEveryTexelThatShowsTheSphere) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -307,8 +307,8 @@ TEST(TexelsNear, IsEmptyFarAwayAndTheWholeFaceWithoutArea) {
   EXPECT_GE(box.i1, 50);
 }
 
-// T-K16c: what a painted sphere leaves on a surface is round, however its coordinates stretch.
-TEST(TexelMap, APaintedSpotIsRoundWhereCoordinatesAreStretchedTenTimes) {
+// T-K16c: a spot painted by a sphere is round under any stretch of the coordinates.
+TEST(TexelMap, PaintedSpotIsRoundUnderTenfoldStretch) {
   // A sheet of 1 x 1 m, 10 times finer along u than along v.
   const int width = 1000, height = 100;
   const TriangleMesh mesh = sheet(1, 1, 8);

@@ -1,4 +1,4 @@
-// Paint across an atlas's charts, and when a mesh's own coordinates will do.
+// Paint across an atlas's charts, and the choice between an atlas and the mesh's own coordinates.
 #include <random>
 
 #include "geometry/atlas/texel_map.h"
@@ -24,10 +24,10 @@ double sampled(const std::vector<double>& image, int size, const Vec2& uv) {
   return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
 }
 
-// Paints a linear function of space through texels, and reads it back: no line along a chart's
-// edge.
+// Paints a linear function of space through texels and reads it back: no line appears along a
+// chart's edge.
 void expectNoSeams(const TriangleMesh& mesh, int size) {
-  const CornerUvs uvs = *madeAtlas(mesh, size).uvs;
+  const CornerUvs uvs = *generateAtlas(mesh, size).uvs;
   const TexelMap map = texelMap(uvs, size, size);
   const Vec3 slope = Vec3(0.48, -0.6, 0.64);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -40,7 +40,7 @@ void expectNoSeams(const TriangleMesh& mesh, int size) {
           texelBarycentric(uvs[static_cast<std::size_t>(face)], (i + 0.5) / size, (j + 0.5) / size);
       image[static_cast<std::size_t>(j * size + i)] = slope.dot(position(mesh, {face, weights}));
     }
-  // A texel in space is widest where a face is stretched most.
+  // A texel is widest in space where a face is stretched most.
   double texel = 0;
   for (std::size_t f = 0; f < uvs.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -79,7 +79,7 @@ TEST(MadeAtlas, HoldsRealMeshes) {
     const auto path = test::sharedData(std::string("meshes/") + name);
     PATINA_SKIP_WITHOUT(path);
     const TriangleMesh mesh = readMesh(path);
-    const TextureLayout layout = madeAtlas(mesh, 512);
+    const TextureLayout layout = generateAtlas(mesh, 512);
     EXPECT_GT(share(layout), 0.4) << name;
     EXPECT_LT(layout.charts, 200) << name;
     if (mesh.triangles.size() < 10000) expectAtlas(mesh, layout, 512);
@@ -100,7 +100,7 @@ TriangleMesh mapped(TriangleMesh mesh) {
 TEST(TextureLayout, KeepsTheMeshsOwnCoordinates) {
   const TriangleMesh mesh = mapped(sheet(1, 1, 4));
   const TextureLayout layout = textureLayout(mesh, 256);
-  EXPECT_FALSE(layout.made);
+  EXPECT_FALSE(layout.generated);
   EXPECT_EQ(ownLayoutFault(mesh), "");
   EXPECT_EQ(*layout.uvs, mesh.corner_uvs);
   EXPECT_EQ(layout.charts, 1);
@@ -121,16 +121,16 @@ TriangleMesh halved(bool apart) {
 
 TEST(TextureLayout, CountsPiecesOfTheMeshsOwnCoordinates) {
   const TextureLayout layout = textureLayout(halved(true), 256);
-  EXPECT_FALSE(layout.made);
+  EXPECT_FALSE(layout.generated);
   EXPECT_EQ(layout.charts, 2);
 }
 
-TEST(TextureLayout, MakesAnAtlasAndSaysWhyWhereCoordinatesFail) {
+TEST(TextureLayout, MakesAnAtlasAndReportsWhyIfCoordinatesFail) {
   const TriangleMesh good = mapped(sheet(1, 1, 4));
   const auto expectMade = [](const TriangleMesh& mesh, const std::string& reason) {
     const std::string why = ownLayoutFault(mesh);
     const TextureLayout layout = textureLayout(mesh, 64);
-    EXPECT_TRUE(layout.made);
+    EXPECT_TRUE(layout.generated);
     EXPECT_NE(why.find(reason), std::string::npos) << why;
     TriangleMesh bare = mesh;
     bare.corner_uvs.clear();
@@ -158,7 +158,7 @@ TEST(TextureLayout, MakesAnAtlasAndSaysWhyWhereCoordinatesFail) {
   expectMade(mesh, "no area on 31 triangles");
 }
 
-TEST(OwnLayoutFault, NamesASideWithoutAreaAndChartsThatAreTooSmall) {
+TEST(OwnLayoutFault, NamesASideWithoutAreaAndTooSmallCharts) {
   TriangleMesh mesh = sheet(1, 1, 4);
   for (const Triangle& t : mesh.triangles) {
     auto& uv = mesh.corner_uvs.emplace_back();

@@ -26,35 +26,35 @@ std::string failureOf(const std::string& text) {
   return "";
 }
 
-TEST(TexturedObj, ReadsThePapersPlane) {
+TEST(TexturedObj, ReadsThePublishedPlane) {
   const TexturedMesh read = parseTexturedObj(kPlane, "plane.obj");
   ASSERT_EQ(read.mesh.triangles.size(), 2u);
   ASSERT_EQ(read.textured.size(), 2u);
   EXPECT_EQ(read.textured[1].face, 1);
   EXPECT_EQ(read.textured[1].texture, 1);
-  EXPECT_EQ(read.textured[1].at[0], Vec2(50, 0));
-  EXPECT_EQ(read.textured[1].at[1], Vec2(0, 50));
-  EXPECT_EQ(read.textured[1].at[2], Vec2(50, 50));
+  EXPECT_EQ(read.textured[1].coords[0], Vec2(50, 0));
+  EXPECT_EQ(read.textured[1].coords[1], Vec2(0, 50));
+  EXPECT_EQ(read.textured[1].coords[2], Vec2(50, 50));
 }
 
-TEST(TexturedObj, OrdinaryReadersPassOverIt) {
+TEST(TexturedObj, IsSkippedByOtherReaders) {
   EXPECT_EQ(parseObj(kPlane, "plane.obj").triangles.size(), 2u);
   EXPECT_EQ(parseObj(kPlane + "h what this is\n", "plane.obj").triangles.size(), 2u);
 }
 
-TEST(TexturedObj, OneWithoutCoordinatesHasNoTexture) {
+TEST(TexturedObj, HasNoTextureWithoutCoordinates) {
   EXPECT_TRUE(parseTexturedObj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n", "a.obj")
                   .textured.empty());
 }
 
-TEST(TexturedObj, UnderstandsWhatOtherProgramsWrite) {
+TEST(TexturedObj, ReadsTheFormsOfOtherPrograms) {
   const TexturedMesh read = parseTexturedObj(
       "## made by hand\r\nv 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nvt 0 0\r\nvn 0 0 1\r\n"
       "f -3/1/1 -2/1/1 -1/1/1\r\nh 7 0 0 1 0 \\\r\n 0 1 # left\r\nf 1 3 2\r\nh -1\r\n",
       "a.obj");
   ASSERT_EQ(read.textured.size(), 1u);
   EXPECT_EQ(read.textured[0].texture, 7);
-  EXPECT_EQ(read.textured[0].at[2], Vec2(0, 1));
+  EXPECT_EQ(read.textured[0].coords[2], Vec2(0, 1));
 }
 
 TEST(TexturedObj, ReadsBackBitForBit) {
@@ -79,7 +79,7 @@ TEST(TexturedObj, ReadsBackBitForBit) {
   EXPECT_EQ(readMesh(a).triangles, mesh.triangles);
 }
 
-TEST(TexturedObj, NamesTheLineOfWhatIsWrong) {
+TEST(TexturedObj, NamesTheLineOfAFault) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
   EXPECT_NE(failureOf(three + "f 1 2 3\nf 2 4 3\nh 1 0 0 0 0 0 0\n").find("1 of 2 faces"),
             std::string::npos);

@@ -10,9 +10,14 @@
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_pieces.h"
 #include "geometry/tree/triangle_tree.h"
-#include "geometry/tree/wide_bvh.h"
 
 namespace patina {
+
+namespace packet_plain { // the kernel for any processor
+void lattice(const LatticeJob& job);
+void pointCandidates(PointJob& job);
+} // namespace packet_plain
+
 namespace {
 
 struct Answer {
@@ -24,7 +29,7 @@ struct Kernels {
   explicit Kernels(const TriangleMesh& mesh) {
     TrianglePieces pieces = piecesOf(mesh.positions, mesh.triangles);
     nodes = buildWideBvh(pieces.boxes);
-    inner = moveLeavesBehind(nodes);
+    inner = partitionLeavesLast(nodes);
     const auto faces = static_cast<std::int32_t>(mesh.triangles.size());
     for (const BoxRef& box : pieces.boxes) {
       const std::int32_t id = box.id();
@@ -64,7 +69,7 @@ struct Kernels {
   PointJob pointJob(const TriangleMesh& mesh, const Vec3& p) const {
     PointJob job;
     job.nodes = nodes.data();
-    job.inner = inner;
+    job.first_leaf_node = inner;
     job.blocks = blocks.data();
     job.triangles = triangles.data();
     job.corners = mesh.triangles.data()->data();
@@ -87,11 +92,11 @@ void expectAgreement(const TriangleMesh& mesh) {
     for (const double spacing : {0.02, 0.2})
       for (const double reach : {0.1, 1e3}) {
         const Answer native = kernels.answer(closestOnLattice, -0.71, spacing, side, reach);
-        const Answer plain = kernels.answer(closestOnLatticePlain, -0.71, spacing, side, reach);
+        const Answer plain = kernels.answer(packet_plain::lattice, -0.71, spacing, side, reach);
         int found = 0;
         for (std::size_t i = 0; i < native.triangle.size(); ++i) {
           const float a = native.distance[i], b = plain.distance[i];
-          if (std::isinf(a) || std::isinf(b)) { // at the reach's end either may be
+          if (std::isinf(a) || std::isinf(b)) { // both answers are right at the limit
             EXPECT_GT(std::min(a, b), reach * (1 - 1e-6));
             continue;
           }
@@ -115,8 +120,8 @@ double exactDistance(const TriangleMesh& mesh, std::size_t face, const Vec3& p) 
   return (w[0] * a + w[1] * b + w[2] * c - p).norm();
 }
 
-// The answer is the lowest of the faces that tie in double precision. So it is the same bits in all
-// instructions as long as each kernel hands over every one of them.
+// The answer is the lowest of the faces that tie in double precision. It is bitwise the same for
+// all instruction sets if each kernel returns every one of them.
 void expectEveryNearestFace(const TriangleMesh& mesh, double half) {
   const Kernels kernels(mesh);
   std::mt19937 random(17);
@@ -127,7 +132,7 @@ void expectEveryNearestFace(const TriangleMesh& mesh, double half) {
     std::vector<double> distance(mesh.triangles.size());
     for (std::size_t f = 0; f < distance.size(); ++f) distance[f] = exactDistance(mesh, f, p);
     const double least = *std::min_element(distance.begin(), distance.end());
-    for (const auto kernel : {trianglesNear, trianglesNearPlain}) {
+    for (const auto kernel : {trianglesNear, packet_plain::pointCandidates}) {
       PointJob job = kernels.pointJob(mesh, p);
       kernel(job);
       ASSERT_GT(job.count, 0);
@@ -140,7 +145,7 @@ void expectEveryNearestFace(const TriangleMesh& mesh, double half) {
   }
 }
 
-// Thinner and thinner, in all directions.
+// Triangles become thinner and thinner, in all directions.
 TriangleMesh needles() {
   std::mt19937 random(23);
   std::uniform_real_distribution<double> u(-0.7, 0.7);
@@ -154,7 +159,7 @@ TriangleMesh needles() {
   return mesh;
 }
 
-TEST(TrianglePacket, HandsOverEveryNearestFace) {
+TEST(TrianglePacket, ReturnsEveryNearestFace) {
   expectEveryNearestFace(icosphere(0.9, 8), 1);
   expectEveryNearestFace(torus(0.7, 0.2, 37, 19), 1);
   expectEveryNearestFace(box(Vec3(1.4, 1, 1e-3)), 1);
@@ -166,7 +171,7 @@ TEST(TrianglePacket, NodesAreFullAndNoPathIsTooLong) {
   const TriangleMesh mesh = icosphere(0.9, 30);
   TrianglePieces pieces = piecesOf(mesh.positions, mesh.triangles);
   std::vector<WideNode> nodes = buildWideBvh(pieces.boxes);
-  const std::int32_t inner = moveLeavesBehind(nodes);
+  const std::int32_t inner = partitionLeavesLast(nodes);
   EXPECT_LT(nodes.size(), pieces.boxes.size() / 5);
   EXPECT_LT(inner, static_cast<std::int32_t>(nodes.size() / 5));
   std::vector<int> depth(nodes.size(), 0), seen(pieces.boxes.size(), 0);
@@ -178,7 +183,7 @@ TEST(TrianglePacket, NodesAreFullAndNoPathIsTooLong) {
       if (child < 0) {
         ++seen[static_cast<std::size_t>(~child)];
       } else {
-        ASSERT_LT(n, static_cast<std::size_t>(inner)); // behind are triangles alone
+        ASSERT_LT(n, static_cast<std::size_t>(inner)); // behind are triangles only
         ASSERT_GT(child, static_cast<std::int32_t>(n));
         depth[static_cast<std::size_t>(child)] = depth[n] + 1;
         ASSERT_LE(depth[n] + 1, 12);
@@ -187,7 +192,7 @@ TEST(TrianglePacket, NodesAreFullAndNoPathIsTooLong) {
   for (const int count : seen) EXPECT_EQ(count, 1);
 }
 
-// Sizes and places that shrink by powers defeat binned splits, which then peel off single boxes.
+// Sizes and positions that shrink by powers defeat binned splits, which then split off one box.
 TEST(TrianglePacket, DepthIsBoundedOnAdversarialBoxes) {
   std::vector<BoxRef> boxes(100000);
   for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -35,7 +35,7 @@ TriangleMesh oneTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {{a, b, c}, {{0, 1, 2}}, {}};
 }
 
-// Repeated corners, collinear corners and needles among sound triangles.
+// Repeated corners, collinear corners and needles among valid triangles.
 TriangleMesh degenerate() {
   TriangleMesh mesh = joined(oneTriangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}),
                              oneTriangle({1, 0, 0}, {1, 0, 0}, {1, 1, 0}));
@@ -50,7 +50,7 @@ struct BruteForce {
   std::int32_t face = -1;
 };
 
-// A segment-wise distance that shares no code with the tree: the triangle's plane, else its edges.
+// A distance that shares no code with the tree: the triangle's plane, else its edges.
 double triangleDistance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto segment = [&](const Vec3& u, const Vec3& v) {
     const double l2 = (v - u).squaredNorm();
@@ -121,7 +121,7 @@ TEST(TriangleTree, AgreesWithBruteForceOnDegenerateTriangles) {
 TEST(TriangleTree, AgreesWithBruteForceForAnyNumberOfTriangles) {
   for (const int count : {1, 2, 7, 8, 9, 15, 16, 17, 63, 64, 65, 511, 513, 777, 1500})
     expectClosest(soup(count, 0.1, static_cast<unsigned>(count)), randomPoints(50, 1.5), 1e-14);
-  TriangleMesh shrinking; // splits peel off a few at a time
+  TriangleMesh shrinking; // splits separate a few at a time
   for (int i = 0; i < 3000; ++i) {
     const double s = std::exp2(-0.01 * i);
     for (const Vec3& p : {Vec3(1, 0, 0), Vec3(1.02, 0.1, 0), Vec3(1, 0, 0.1)})
@@ -131,7 +131,7 @@ TEST(TriangleTree, AgreesWithBruteForceForAnyNumberOfTriangles) {
   expectClosest(shrinking, randomPoints(50, 1), 1e-11); // up to there the small ones tie
 }
 
-TEST(TriangleTree, AgreesWithBruteForceAtAnySizeAndPlace) {
+TEST(TriangleTree, AgreesWithBruteForceAtAnySizeAndPosition) {
   for (const double scale : {1e-9, 1.0, 1e9}) {
     TriangleMesh mesh = soup(300, 0.2, 41);
     for (Vec3& p : mesh.positions) p *= scale;
@@ -154,8 +154,8 @@ TEST(TriangleTree, AgreesWithBruteForceOnNeedles) {
   expectClosest(mesh, randomPoints(500, 1.5), 1e-12);
 }
 
-// Pairs of the same triangle, the other way round and from another corner.
-TEST(TriangleTree, TiesOfDuplicatesGoToTheLowestFaceWhateverTheWarmStart) {
+// Pairs of the same triangle, with opposite orientation and another first corner.
+TEST(TriangleTree, TiesOfDuplicatesGoToTheLowestFaceForAnyWarmStart) {
   TriangleMesh mesh = soup(700, 0.1, 44);
   const std::size_t count = mesh.triangles.size();
   for (std::size_t i = count; i-- > 0;) {
@@ -179,7 +179,7 @@ TEST(TriangleTree, HoldsAtMost300BytesATriangle) {
   EXPECT_LT(tree.bytes(), 300 * tree.size());
 }
 
-// A pile of identical boxes gives the builder nothing to split by.
+// A pile of identical boxes gives the builder no split.
 TEST(TriangleTree, BuildsOverCoincidentTrianglesAndNamesTheLowest) {
   TriangleMesh mesh = oneTriangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   mesh.triangles.resize(1000, mesh.triangles[0]);
@@ -187,6 +187,34 @@ TEST(TriangleTree, BuildsOverCoincidentTrianglesAndNamesTheLowest) {
   EXPECT_EQ(tree.closestPoint({0.2, 0.2, 1}).surface.face, 0);
   EXPECT_EQ(tree.closestPoint({0.2, 0.2, 1}, 700).surface.face, 0);
   EXPECT_EQ(tree.facesInSphere({0.2, 0.2, 0}, 0.1).size(), 1000u);
+}
+
+// Copies in any order of their corners, of shared and of own vertices.
+TEST(TriangleTree, ManyCopiesOfAFaceChangeNoAnswer) {
+  const TriangleMesh once = icosphere(1, 4);
+  const auto count = static_cast<std::int32_t>(once.triangles.size());
+  TriangleMesh mesh = once;
+  for (std::size_t i = 0; i < 3; ++i) mesh.positions.push_back(once.corner(7, static_cast<int>(i)));
+  const auto own = static_cast<std::int32_t>(once.positions.size());
+  Triangle shared = once.triangles[7], unshared = {own, own + 1, own + 2};
+  for (int i = 0; i < 100; ++i) {
+    mesh.triangles.push_back(shared);
+    mesh.triangles.push_back(unshared);
+    std::next_permutation(shared.begin(), shared.end());
+    std::next_permutation(unshared.begin(), unshared.end());
+  }
+  const TriangleTree tree(once), copied(mesh);
+  std::vector<Vec3> points = randomPoints(300, 1.5);
+  for (int i = 0; i < 20; ++i) points.push_back(0.1 * i * (once.corner(7, 0) + once.corner(7, 1)));
+  for (const Vec3& p : points) {
+    const ClosestPoint one = tree.closestPoint(p), other = copied.closestPoint(p, count + 5);
+    EXPECT_EQ(one.surface.face, other.surface.face);
+    EXPECT_NEAR(one.distance, other.distance, 1e-12);
+    std::vector<std::int32_t> faces = tree.facesInSphere(p, 0.5);
+    if (std::find(faces.begin(), faces.end(), 7) != faces.end())
+      for (std::int32_t copy = count; copy < count + 200; ++copy) faces.push_back(copy);
+    EXPECT_EQ(copied.facesInSphere(p, 0.5), faces);
+  }
 }
 
 TEST(TriangleTree, TiesGoToTheLowestFace) {
@@ -301,7 +329,7 @@ TEST(TriangleTree, FacesInSphereAgreeWithBruteForce) {
   }
 }
 
-TEST(TriangleTree, RefusesWhatItCannotHold) {
+TEST(TriangleTree, RejectsEmptyAndNonFiniteMeshes) {
   EXPECT_THROW(TriangleTree{TriangleMesh{}}, std::invalid_argument);
   EXPECT_THROW(TriangleTree(oneTriangle({0, 0, 0}, {1, 0, 0}, {0, kInf, 0})),
                std::invalid_argument);
@@ -373,9 +401,9 @@ TEST(TriangleTreeLattice, TiesGoToTheLowestFace) {
   for (const std::int32_t f : face) EXPECT_LT(f, static_cast<std::int32_t>(count));
 }
 
-// Fine triangles and a coarse lattice are searched point by point; there float overflows.
+// Fine triangles and a coarse lattice are searched point by point, where float overflows.
 TEST(TriangleTreeLattice, EndsForPointsBeyondFloat) {
-  const TriangleTree tree(icosphere(1, 7)); // with places that hold no triangle
+  const TriangleTree tree(icosphere(1, 7)); // also indices without a triangle
   std::vector<float> distance(512);
   std::vector<std::int32_t> face(512);
   for (const double spacing : {1.0, 1e17, 1e25, 1e45}) {

@@ -1,4 +1,4 @@
-// Overlap of texture coordinates, against all pairs of faces by an oracle of its own.
+// Overlap of texture coordinates, against an independent test of all pairs of faces.
 #include "geometry/atlas/uv_overlap.h"
 
 #include <functional>
@@ -17,7 +17,7 @@ Corners turned(Corners uv) {
   return uv;
 }
 
-// How deep two faces lie in one another; negative where they are apart.
+// Depth of overlap of two faces; negative if they are separate.
 double depth(const Corners& a, const Corners& b) {
   return -separation(turned(a), turned(b));
 }
@@ -63,7 +63,7 @@ CornerUvs grid(int n, unsigned seed) {
   return uvs;
 }
 
-// Faces of a regular polygon of n corners, all with its middle.
+// Faces of a regular polygon of n corners around its centre.
 CornerUvs fan(int n) {
   const auto at = [&](int k) {
     const double angle = 2 * std::numbers::pi * (k % n) / n;
@@ -85,7 +85,7 @@ CornerUvs both(CornerUvs a, const CornerUvs& b) {
   return a;
 }
 
-TEST(UvOverlap, IsNotFoundWhereFacesOnlyTouch) {
+TEST(UvOverlap, IsAbsentIfFacesOnlyTouch) {
   for (const int n : {1, 2, 7, 40}) EXPECT_FALSE(findUvOverlap(grid(n, 1))) << n;
   for (const int n : {3, 17, 400, 20000}) EXPECT_FALSE(findUvOverlap(fan(n))) << n;
   EXPECT_FALSE(findUvOverlap({}));
@@ -95,15 +95,15 @@ TEST(UvOverlap, IsNotFoundWhereFacesOnlyTouch) {
   EXPECT_FALSE(findUvOverlap(both(changed(grid(7, 2), left), changed(grid(11, 3), right))));
 }
 
-TEST(UvOverlap, IsNotFoundInAtlasesOfOurOwn) {
+TEST(UvOverlap, IsAbsentInGeneratedAtlases) {
   for (const TriangleMesh& mesh :
        {icosphere(1, 20), torus(1, 0.4, 60, 30), box(Vec3(1, 2, 3), 9), vase(), galleon(1),
         sheet(1, 2, 30), test::spiralRamp(20, 0.3, 0.1, 0),
         withShrunkenTriangles(icosphere(1, 4), 0.1)})
-    EXPECT_FALSE(findUvOverlap(*madeAtlas(mesh, 1024).uvs));
+    EXPECT_FALSE(findUvOverlap(*generateAtlas(mesh, 1024).uvs));
 }
 
-TEST(UvOverlap, IsFoundWhereverFacesShareAPlace) {
+TEST(UvOverlap, IsFoundWhereverFacesOverlap) {
   const CornerUvs plain = grid(12, 4);
   const auto mirrored = [](const Vec2& p) { return Vec2(std::abs(2 * p[0] - 1), p[1]); };
   const auto tiled = [](const Vec2& p) { return Vec2(p[0] < 0.5 ? 2 * p[0] : 2 * p[0] - 1, p[1]); };
@@ -113,7 +113,7 @@ TEST(UvOverlap, IsFoundWhereverFacesShareAPlace) {
   expectFound(changed(grid(12, 0), mirrored));
   expectFound(changed(changed(grid(12, 0), tiled), mirrored));
   expectFound(both(plain, plain));                       // every face twice
-  expectFound(both(plain, changed(plain, turned_over))); // and looking the other way
+  expectFound(both(plain, changed(plain, turned_over))); // with opposite orientation
   expectFound(both(changed(plain, [](const Vec2& p) { return Vec2(p * 0.99); }),
                    changed(changed(plain, [](const Vec2& p) { return Vec2(p * 0.99); }), shifted)));
   expectFound(both(CornerUvs{{Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}}, changed(plain, small)));
@@ -159,8 +159,8 @@ TEST(UvOverlap, AgreesWithAllPairsOfRandomFaces) {
   EXPECT_LT(overlapping, 390);
 }
 
-TEST(UvOverlap, IsNotTheFoldsThatRoundingMakes) {
-  // Coordinates as a file with five decimals has them: needles among them are turned over.
+TEST(UvOverlap, IgnoresFoldsFromRounding) {
+  // Coordinates rounded to five decimals like those of a file: some needles flip.
   std::mt19937 random(8);
   std::uniform_real_distribution<double> unit(0, 1);
   CornerUvs uvs = grid(12, 9);
@@ -186,7 +186,7 @@ TEST(UvOverlap, IsNotTheFoldsThatRoundingMakes) {
       findUvOverlap(changed(uvs, [](const Vec2& p) { return p.cast<float>().cast<double>(); })));
 }
 
-TEST(UvOverlap, LeavesOutFacesWithoutArea) {
+TEST(UvOverlap, IgnoresFacesWithoutArea) {
   const CornerUvs plain = grid(3, 10);
   EXPECT_FALSE(
       findUvOverlap(both(plain, CornerUvs(9, Corners{plain[0][1], plain[0][1], plain[0][1]}))));

@@ -8,6 +8,8 @@
 
 #include "geometry/mesh/shapes.h"
 #include "support/changed_mesh.h"
+#include "support/mesh_defects.h"
+#include "support/winding_sum.h"
 
 namespace patina {
 namespace {
@@ -56,7 +58,7 @@ double worstError(const TriangleMesh& mesh, const std::vector<Vec3>& points, dou
   return worst;
 }
 
-// K01: 1 inside and 0 outside, by the sum itself.
+// K01: the sum itself is 1 inside and 0 outside.
 TEST(WindingNumber, BruteForceIsOneInsideAndZeroOutside) {
   const TriangleMesh mesh = torus(0.04, 0.015, 40, 20);
   EXPECT_NEAR(windingNumberBruteForce(mesh, Vec3(0.04, 0, 0)), 1, 1e-12);
@@ -102,7 +104,7 @@ TEST(WindingNumber, SmallMeshesAreSummedExactly) {
     EXPECT_NEAR(winding.at(p), windingNumberBruteForce(mesh, p), 1e-5);
 }
 
-TEST(WindingNumber, NothingDependsOnPlaceOrSize) {
+TEST(WindingNumber, IsIndependentOfPositionAndSize) {
   const TriangleMesh mesh = icosphere(1, 10);
   const WindingNumber here(mesh);
   for (const auto& [by, scale] : {std::pair(Vec3(1e6, -1e6, 1e6), 1.0),
@@ -131,7 +133,7 @@ TEST(WindingNumber, OverlappingBodiesAdd) {
 
 TEST(WindingNumber, CoincidentTrianglesCountOnce) {
   const TriangleMesh mesh = icosphere(0.05, 8);
-  TriangleMesh rotated = mesh; // the same faces, each begun at another corner
+  TriangleMesh rotated = mesh; // the same faces with other first corners
   for (Triangle& t : rotated.triangles) t = {t[1], t[2], t[0]};
   const WindingNumber twice(joined(mesh, rotated));
   EXPECT_NEAR(twice.at(Vec3(0, 0.01, 0)), 1, 1e-2);
@@ -140,7 +142,7 @@ TEST(WindingNumber, CoincidentTrianglesCountOnce) {
   EXPECT_NEAR(mostly_outward.at(Vec3(0, 0.06, 0)), 0, 1e-2);
 }
 
-TEST(WindingNumber, BodyJoinedWithItsInverseStillHasAnInside) {
+TEST(WindingNumber, BodyJoinedWithItsInverseHasAnInside) {
   const TriangleMesh mesh = icosphere(0.05, 8);
   for (const TriangleMesh& both : {joined(mesh, inverted(mesh)), joined(inverted(mesh), mesh)}) {
     const WindingNumber winding(both);
@@ -149,7 +151,7 @@ TEST(WindingNumber, BodyJoinedWithItsInverseStillHasAnInside) {
   }
 }
 
-// The wall between two touching boxes is there twice, facing both ways: it must cancel.
+// The wall between two touching boxes exists twice with opposite orientation: it must cancel.
 TEST(WindingNumber, WallBetweenTouchingBodiesCancels) {
   const TriangleMesh half = box(Vec3(1, 1, 1), 2);
   const TriangleMesh mesh = joined(half, scaledAndMoved(half, Vec3(1, 0, 0)));

@@ -1,5 +1,4 @@
-// A path is laid onto a mesh by pointer and keys, and by numbers that are known.
-#ifdef PATINA_HAS_ACQUISITION
+// A path is placed on a mesh by pointer and keys, and by typed numbers.
 #include <cmath>
 #include <fstream>
 
@@ -7,7 +6,7 @@
 
 #include <vtkCamera.h>
 
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/control/desk_controller.h"
 #include "geometry/mesh/shapes.h"
@@ -46,13 +45,13 @@ std::vector<PathSample> circle(double radius, const Pose& pose, double x = 1, do
   return path;
 }
 
-TEST(Alignment, ItsErrorAndItsBasinAreThoseOfAPlate) {
+TEST(Alignment, ErrorAndCostProfileMatchThoseOfAPlate) {
   Alignment alignment;
   EXPECT_FALSE(alignment.isReady());
   alignment.setMesh(std::make_shared<const TriangleMesh>(plate()));
   alignment.setPath(circle(0.02, Pose(Eigen::Translation3d(0.3, 0.1, -0.2))));
   ASSERT_TRUE(alignment.isReady());
-  EXPECT_LT(alignment.middle().norm(), 1e-9); // middle on middle
+  EXPECT_LT(alignment.centroid().norm(), 1e-9); // centre on centre
   Pose pose = alignment.pose();
   pose.translation().z() += 0.003;
   Residuals off = residualsOf(*alignment.target(), alignment.points(), pose);
@@ -60,12 +59,13 @@ TEST(Alignment, ItsErrorAndItsBasinAreThoseOfAPlate) {
   EXPECT_NEAR(off.rms, 0.003, 1e-12);
   EXPECT_NEAR(off.worst, 0.003, 1e-12);
   Progress quiet;
-  const Basin basin = basinOf(*alignment.target(), alignment.points(), alignment.pose(), quiet);
+  const CostProfile basin =
+      costProfileAround(*alignment.target(), alignment.points(), alignment.pose(), quiet);
   const auto steps = static_cast<double>(basin.along[2].size());
   for (std::size_t i = 0; i < basin.along[2].size(); ++i) {
     const double part = 2 * static_cast<double>(i) / (steps - 1) - 1;
     EXPECT_NEAR(basin.along[0][i], 0, 1e-9); // slides along it
-    EXPECT_NEAR(basin.along[5][i], 0, 1e-9); // and turns on it
+    EXPECT_NEAR(basin.along[5][i], 0, 1e-9); // turns on it
     EXPECT_NEAR(basin.along[2][i], std::abs(part) * basin.shift, 1e-9);
     // z = r sin(a) sin(turn) over the circle: its rms is r |sin(turn)| / sqrt(2).
     EXPECT_NEAR(basin.along[3][i], 0.02 * std::sin(std::abs(part) * basin.turn) / std::sqrt(2.),
@@ -75,7 +75,7 @@ TEST(Alignment, ItsErrorAndItsBasinAreThoseOfAPlate) {
   for (const double rms : basin.map) EXPECT_NEAR(rms, 0, 1e-9);
 }
 
-TEST(Alignment, UndoesStepByStepAndForgetsWhatWasUndone) {
+TEST(Alignment, UndoesStepByStepAndDropsUndoneStepsOnANewOne) {
   Alignment alignment;
   alignment.setMesh(std::make_shared<const TriangleMesh>(plate()));
   alignment.setPath(circle(0.02, Pose::Identity()));
@@ -84,7 +84,7 @@ TEST(Alignment, UndoesStepByStepAndForgetsWhatWasUndone) {
     alignment.setPose(Pose(Eigen::Translation3d(x, 0, 0)) * alignment.pose());
     alignment.commit();
   };
-  alignment.commit(); // of nothing
+  alignment.commit(); // nothing to commit
   EXPECT_EQ(alignment.done(), 0U);
   moveBy(0.01);
   const Pose second = alignment.pose();
@@ -103,7 +103,7 @@ TEST(Alignment, UndoesStepByStepAndForgetsWhatWasUndone) {
 
 class AlignDeskTest : public DrivenWindow {
  protected:
-  // An ellipsoid with a knob, so that a path over it fits in one place.
+  // An ellipsoid with a knob, so that a path over it fits at one pose only.
   static TriangleMesh body() {
     TriangleMesh mesh = icosphere(1, 24);
     for (Vec3& p : mesh.positions) {
@@ -117,7 +117,7 @@ class AlignDeskTest : public DrivenWindow {
     if (IsSkipped()) return;
     mesh_ = body();
     ASSERT_TRUE(open(saved(mesh_, "body.ply")));
-    // Vertices of the upper side along a spiral: nothing of the registration.
+    // Vertices of the upper side along a spiral; the registration is not involved.
     for (int i = 0; i < 1500; ++i) {
       const double along = i / 1500., angle = 2 * M_PI * 6 * along;
       const Vec3 wanted(0.038 * along * std::cos(angle), 0.026 * along * std::sin(angle), 0);
@@ -145,7 +145,7 @@ class AlignDeskTest : public DrivenWindow {
     answerWithPath(folder_ / "path.csv");
     clickOn("align_open");
     ASSERT_TRUE(waitUntil([&] { return desk().alignment().isReady(); }, 10000));
-    wait(1500); // four views, and the cards have their place
+    wait(1500); // four views and cards need time
   }
   AlignDesk& desk() { return *window_->findChild<AlignDesk*>(); }
   const Pose& pose() { return desk().alignment().pose(); }
@@ -156,7 +156,7 @@ class AlignDeskTest : public DrivenWindow {
   double metresPerPixel(const QString& name) {
     return 2 * camera(name).GetParallelScale() / cell(name).height();
   }
-  // Where a point of the mesh's frame is on the screen.
+  // Returns a point of the mesh's frame on the screen.
   QPoint screen(const QString& name, const Vec3& p) {
     vtkCamera& eye = camera(name);
     const Vec3 back = (Vec3(eye.GetPosition()) - Vec3(eye.GetFocalPoint())).normalized();
@@ -166,7 +166,8 @@ class AlignDeskTest : public DrivenWindow {
                                   QPoint(qRound(from.dot(right)), qRound(-from.dot(up))));
   }
   double radius(const QString& name) { return cell(name).picture().handle().view()->radius; }
-  double farthest() { // of the path's samples from where they belong
+  // Returns the largest distance of the path's samples from their true positions.
+  double farthest() {
     double most = 0;
     for (const Vec3& p : upper_)
       most = std::max(most, (pose() * (camera_from_mesh_ * p) - p).norm());
@@ -183,18 +184,45 @@ class AlignDeskTest : public DrivenWindow {
   Pose camera_from_mesh_ = Pose::Identity();
 };
 
-TEST_F(AlignDeskTest, ArrowsAndRingsMoveThePathAndTheErrorFollows) {
+TEST_F(AlignDeskTest, ReadsResidualsUnderThePointerAndColoursThem) {
+  const auto picked = [&] { return find<QLabel>("picked")->text(); };
+  const std::vector<Vec3>& points = desk().alignment().points();
+  pointAt(screen("align_top", pose() * points[points.size() / 2]));
+  ASSERT_TRUE(waitUntil([&] { return picked().startsWith("Path"); }, 3000))
+      << picked().toStdString();
+  const Residuals off = residualsOf(*desk().alignment().target(), points, pose());
+  const double shown = picked().section("residual ", 1).section(' ', 0, 0).toDouble();
+  EXPECT_GT(std::abs(shown), 0);
+  EXPECT_LE(std::abs(shown), 1e3 * off.worst + 1e-3);
+  pointAt(cell("align_top").mapToGlobal(QPoint(3, 3)));
+  EXPECT_TRUE(waitUntil([&] { return picked().isEmpty(); }, 3000));
+
+  openTab("show");
+  wait(100);
+  EXPECT_EQ(find<QComboBox>("color_thing")->currentText(), QStringLiteral("Error map"));
+  constexpr std::uint32_t kDown = 0xff54;
+  click(*find<QComboBox>("color_map"));
+  wait(200);
+  type(kDown);
+  type(kEnter);
+  ASSERT_TRUE(waitUntil(
+      [&] { return scaleOf(edits().scene()->scene.colors, "error").map == ColorMap::viridis; },
+      5000));
+  keepPicture("align_viridis");
+}
+
+TEST_F(AlignDeskTest, ArrowsAndRingsMoveThePathAndUpdateTheError) {
   keepPicture("align_begin");
   for (const char* name : {"align_top", "align_bottom", "align_front", "align_back"})
     EXPECT_TRUE(cell(name).isVisible()) << name;
   const Pose before = pose();
-  const Vec3 middle = desk().alignment().middle();
+  const Vec3 middle = desk().alignment().centroid();
   const QString error = find<QLabel>("align_error")->text();
   const QPoint held = screen("align_top", middle + 0.8 * radius("align_top") * Vec3::UnitX());
   pointAt(held);
   press();
   for (int i = 1; i <= 10; ++i) pointAt(held + QPoint(4 * i, i));
-  // Live: while the button is down.
+  // The pose follows while the button is down.
   EXPECT_NE(find<QLabel>("align_error")->text(), error);
   EXPECT_EQ(desk().alignment().done(), 0U);
   release();
@@ -206,9 +234,9 @@ TEST_F(AlignDeskTest, ArrowsAndRingsMoveThePathAndTheErrorFollows) {
   EXPECT_NEAR(find<ValueRow>("align_x")->value(), 1e3 * pose().translation().x(), 0.006);
   EXPECT_EQ(desk().alignment().done(), 1U);
 
-  // A quarter of a quarter of the ring about y, which the front view has in full.
+  // The drag covers a sixteenth of the ring about y, which the front view shows in full.
   const Pose shifted = pose();
-  const Vec3 now = desk().alignment().middle();
+  const Vec3 now = desk().alignment().centroid();
   const double r = radius("align_front");
   const auto onRing = [&](double degrees) {
     const double a = degrees * M_PI / 180;
@@ -222,7 +250,7 @@ TEST_F(AlignDeskTest, ArrowsAndRingsMoveThePathAndTheErrorFollows) {
   const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose().linear() * shifted.linear().transpose()));
   EXPECT_NEAR(turn.angle() * 180 / M_PI, 30, 2);
   EXPECT_NEAR(std::abs(turn.axis().y()), 1, 1e-9);
-  EXPECT_LT((desk().alignment().middle() - now).norm(), 1e-9);
+  EXPECT_LT((desk().alignment().centroid() - now).norm(), 1e-9);
 
   type('z', kControl);
   EXPECT_TRUE(pose().isApprox(shifted, 1e-12));
@@ -232,7 +260,7 @@ TEST_F(AlignDeskTest, ArrowsAndRingsMoveThePathAndTheErrorFollows) {
   EXPECT_TRUE(pose().isApprox(shifted, 1e-12));
 }
 
-TEST_F(AlignDeskTest, SixValuesAreShiftsAndTurnsAboutTheFixedAxes) {
+TEST_F(AlignDeskTest, SixValuesShiftAndTurnAboutTheFixedAxes) {
   const auto typeInto = [&](const char* row, const QString& number) {
     auto* line = find<ValueRow>(row)->findChild<QLineEdit*>();
     click(*line);
@@ -255,11 +283,11 @@ TEST_F(AlignDeskTest, SixValuesAreShiftsAndTurnsAboutTheFixedAxes) {
   EXPECT_EQ(desk().alignment().done(), 4U);
 }
 
-TEST_F(AlignDeskTest, ThreePointsAndAFitPutThePathWhereItBelongs) {
+TEST_F(AlignDeskTest, ThreePointsAndAFitFindThePose) {
   ASSERT_GT(farthest(), 0.005);
   clickOn("align_pick");
   ASSERT_TRUE(waitUntil([&] { return find<QLabel>("align_hint")->isVisible(); }, 3000));
-  // Three that are far apart, and those of the path that are looked at.
+  // Three distant points of the mesh, and those of the path that the camera looks at.
   const std::vector<Vec3>& looked = desk().alignment().points();
   const auto& top = QStringLiteral("align_top");
   for (const double angle : {0.3, 2.4, 4.5}) {
@@ -285,7 +313,7 @@ TEST_F(AlignDeskTest, ThreePointsAndAFitPutThePathWhereItBelongs) {
   EXPECT_LT(farthest(), 2e-6);
   EXPECT_TRUE(find<QLabel>("align_found")->text().contains(QStringLiteral("Fitted")));
   keepPicture("align_fitted");
-  // What is kept is what the command starts from.
+  // The command starts from the kept path.
   answerWithPath(folder_ / "kept.csv");
   clickOn("align_keep");
   ASSERT_TRUE(waitUntil([&] { return std::filesystem::exists(folder_ / "kept.txt"); }, 10000));
@@ -297,15 +325,15 @@ TEST_F(AlignDeskTest, ThreePointsAndAFitPutThePathWhereItBelongs) {
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
 }
 
-// The words of "rms 1.23 mm" and the like [m].
+// Returns the number of a text such as "rms 1.23 mm" [m].
 double lengthAfter(const QString& words, const QString& what) {
   const QString after = words.mid(words.indexOf(what) + what.size());
   const QStringList parts = after.split(QRegularExpression("[\\s\u00a0]"));
   return parts[1].toDouble() * (parts[2].startsWith(QStringLiteral("µm")) ? 1e-6 : 1e-3);
 }
 
-TEST_F(AlignDeskTest, AFitShowsItsResidualsAsLinesAndOverTheMesh) {
-  // Every sample is off by what is known: 0.4 mm outwards and inwards in turn.
+TEST_F(AlignDeskTest, ShowsAFitsResidualsAsLinesAndOnTheMesh) {
+  // Every sample has a known error: 0.4 mm outwards and inwards in turn.
   std::vector<PathSample> path;
   const Vec3 axes(0.04, 0.028, 0.018);
   for (std::size_t i = 0; i < upper_.size(); ++i) {
@@ -358,20 +386,20 @@ TEST_F(AlignDeskTest, AFitShowsItsResidualsAsLinesAndOverTheMesh) {
   clickOn("align_map");
   const QImage map = picture("align_map");
   EXPECT_GT(changed(plain, map), 0.1);
-  // Moved by hand, the old map goes at once; the new one is of where it lies now.
+  // A move by hand hides the old map at once; the new one is for the present pose.
   type('z', kControl);
   EXPECT_FALSE(desk().alignment().found());
   EXPECT_GT(changed(map, picture("align_map_by_hand")), 0.05);
-  // What the fit said of its place is there again with the place.
+  // Redo restores the fit's message with the pose.
   EXPECT_EQ(find<QLabel>("align_found")->text(), QString());
   desk().redo();
   EXPECT_TRUE(desk().alignment().found());
   EXPECT_TRUE(find<QLabel>("align_found")->text().contains(QStringLiteral("Fitted")));
 }
 
-TEST_F(AlignDeskTest, EscapeEndsThePickingAndABadFileLeavesThePath) {
+TEST_F(AlignDeskTest, EscapeEndsPickingAndABadFileKeepsThePath) {
   clickOn("align_pick");
-  pointAt(screen("align_top", desk().alignment().middle()));
+  pointAt(screen("align_top", desk().alignment().centroid()));
   type(kEscape);
   EXPECT_FALSE(find<QLabel>("align_hint")->isVisible());
   std::ofstream(folder_ / "bad.csv") << "t [s],x [m]\n0,1\n";
@@ -384,4 +412,3 @@ TEST_F(AlignDeskTest, EscapeEndsThePickingAndABadFileLeavesThePath) {
 
 } // namespace
 } // namespace patina
-#endif

@@ -1,6 +1,5 @@
-// A SpaceMouse in the window: its driver over the emulated wire moves the camera, by ticks of the
-// window alone.
-#include "app/gui/control/camera_hand.h"
+// A SpaceMouse in the window: its driver over the emulated wire moves the camera, using the
+// window's ticks only.
 
 #include <atomic>
 #include <thread>
@@ -10,9 +9,9 @@
 #include "app/gui/control/view_controller.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
-#include "haptics/devices/device_catalog.h"
-#include "haptics/devices/spacemouse/emulated_spacemouse.h"
-#include "visualization/view/camera.h"
+#include "haptics/catalog/device_catalog.h"
+#include "haptics/spacemouse/emulated_spacemouse.h"
+#include "visualization/values/camera.h"
 
 namespace patina {
 namespace {
@@ -25,7 +24,7 @@ class CameraHandTest : public WindowTest {
   Vec3 right() { return Vec3(camera().GetViewUp()).cross(eye()).normalized(); }
 };
 
-TEST_F(CameraHandTest, ShiftsComesNearerTurnsAndRollsWhatItLooksAt) {
+TEST_F(CameraHandTest, ShiftsZoomsTurnsAndRollsTheView) {
   if (IsSkipped()) return;
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "ball.obj")));
   struct Axes {
@@ -36,20 +35,20 @@ TEST_F(CameraHandTest, ShiftsComesNearerTurnsAndRollsWhatItLooksAt) {
   cap->hand = [axes](double) {
     CapState state;
     for (int i = 0; i < 3; ++i) {
-      state.shift[i] = axes->of[i];
-      state.turn[i] = axes->of[3 + i];
+      state.translation[i] = axes->of[i];
+      state.rotation[i] = axes->of[3 + i];
     }
     return state;
   };
   views().setCameraHand(
       std::make_unique<CameraHand>([=] { return emulateSpaceMouse(cap, systemClock()); }));
   const auto still = [&] {
-    const CameraPlace place = placeOf(camera());
+    const CameraState place = placeOf(camera());
     wait(300);
     return placeOf(camera()) == place;
   };
   ASSERT_TRUE(waitUntil(still, 10000)) << "a cap at rest moves nothing";
-  // What moves when the cap is pushed or turned by a quarter of its way, for a while.
+  // Returns the motion after the cap was pushed or turned by a quarter of its range for a while.
   const auto push = [&](int axis, double counts) {
     axes->of[axis] = counts;
     wait(400);
@@ -59,7 +58,7 @@ TEST_F(CameraHandTest, ShiftsComesNearerTurnsAndRollsWhatItLooksAt) {
   Vec3 before(camera().GetFocalPoint()), side = right();
   push(0, 90);
   EXPECT_LT((Vec3(camera().GetFocalPoint()) - before).dot(side), -1e-3)
-      << "what is seen goes to the right";
+      << "the object moves to the right";
   before = Vec3(camera().GetFocalPoint());
   push(1, 90);
   EXPECT_LT((Vec3(camera().GetFocalPoint()) - before).dot(Vec3(camera().GetViewUp())), -1e-3);
@@ -84,25 +83,25 @@ TEST_F(CameraHandTest, ShiftsComesNearerTurnsAndRollsWhatItLooksAt) {
   EXPECT_TRUE(waitUntil(still, 5000)) << "it is unplugged";
 }
 
-TEST_F(CameraHandTest, IsChosenInTheMenuAndSaysWhatIsMissing) {
+TEST_F(CameraHandTest, IsChosenInTheMenuAndReportsAMissingDevice) {
   if (IsSkipped()) return;
   auto* messages = find<MessagePanel>();
-  const auto said = [&] {
+  const auto notified = [&] {
     for (int i = 0; i < messages->count(); ++i)
       if (messages->item(i)->text().contains("SpaceMouse") ||
           messages->item(i)->text().contains("USB"))
         return true;
     return false;
   };
-  EXPECT_FALSE(said());
+  EXPECT_FALSE(notified());
   trigger("camera_hand");
-  EXPECT_TRUE(waitUntil(said, 10000)) << "none is attached to a machine that builds";
+  EXPECT_TRUE(waitUntil(notified, 10000)) << "none is attached to a machine that builds";
   trigger("camera_hand");
   wait(100);
 }
 
-// The other use of the device, as scenes name it.
-TEST(SpaceMouseDevice, OfTheCatalogMovesTheTipAsFastAsItIsPushed) {
+// The scene names the device: it then moves the tip.
+TEST(SpaceMouseDevice, MovesTheTipInProportionToThePush) {
   const DeviceEntry& entry = deviceNamed("sim:spacemouse");
   DeviceSetup setup;
   const auto target = std::make_shared<TipTarget>(Vec3::Zero());
@@ -113,7 +112,7 @@ TEST(SpaceMouseDevice, OfTheCatalogMovesTheTipAsFastAsItIsPushed) {
   double fastest = 0;
   for (int i = 0; i < 3000 && (tip - Vec3(0.02, 0, 0.01)).norm() > 1e-3; ++i) {
     const DeviceState state = device->exchange(Vec3::Zero(), 1e-3);
-    if (judge(state) == DeviceStatus::ok) {
+    if (effectiveStatus(state) == DeviceStatus::ok) {
       tip = state.position;
       fastest = std::max(fastest, state.velocity.value_or(Vec3::Zero()).cwiseAbs().maxCoeff());
     }

@@ -1,7 +1,7 @@
 // The clip plane, by keys and its handle.
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
-#include "visualization/view/camera.h"
+#include "visualization/values/camera.h"
 
 namespace patina {
 namespace {
@@ -24,7 +24,7 @@ class ClipPlaneTest : public DrivenWindow {
     ASSERT_TRUE(find<QCheckBox>("clip")->isChecked());
     wait(150);
   }
-  // On the screen: a point of the scene.
+  // Returns a point of the scene on the screen.
   QPoint onScreen(const Vec3& point) {
     vtkRenderer& renderer = view().view().renderer();
     double x = point.x(), y = point.y(), z = point.z();
@@ -32,13 +32,13 @@ class ClipPlaneTest : public DrivenWindow {
     return view().mapToGlobal(
         QPoint(qRound((x + 1) / 2 * view().width()), qRound((1 - y) / 2 * view().height())));
   }
-  // Of the front that is cut, and of the inner side that is seen behind it.
+  // Shares of pixels that show the cut front (outside) and the visible inner side.
   double outside() {
     return share([](int r, int g, int b) { return g > 150 && g > r + 12 && g > b + 15; });
   }
 };
 
-TEST_F(ClipPlaneTest, IsThereByItsKeyAndGoesWithoutATrace) {
+TEST_F(ClipPlaneTest, AppearsByItsKeyAndDisappearsWithoutATrace) {
   if (IsSkipped()) return;
   wait(300);
   const double before = outside();
@@ -55,17 +55,17 @@ TEST_F(ClipPlaneTest, IsThereByItsKeyAndGoesWithoutATrace) {
   EXPECT_NEAR(outside(), before, 1e-3);
 }
 
-TEST_F(ClipPlaneTest, ItsBallShiftsItAndItsHeadTiltsIt) {
+TEST_F(ClipPlaneTest, ShiftsByItsBallAndTiltsByItsHead) {
   if (IsSkipped()) return;
   const Vec3 eye(view().view().renderer().GetActiveCamera()->GetPosition());
   turnOn();
   const Vec3 normal = -Vec3::UnitY(), centre = view().view().extent().center();
   const double half = outside();
   drag(onScreen(centre), onScreen(centre + 0.02 * normal));
-  EXPECT_GT(outside(), 1.1 * half) << "less is cut away";
+  EXPECT_GT(outside(), 1.1 * half) << "the cut is smaller";
   drag(onScreen(centre + 0.02 * normal), onScreen(centre));
   EXPECT_NEAR(outside(), half, 0.01);
-  const double length = view().view().clipLength();
+  const double length = view().view().handleLength(false);
   drag(onScreen(centre + length * normal), onScreen(centre + length * Vec3::UnitX()));
   EXPECT_GT(std::abs(outside() - half), 0.01);
   EXPECT_EQ(Vec3(view().view().renderer().GetActiveCamera()->GetPosition()), eye)
@@ -80,7 +80,7 @@ TEST_F(ClipPlaneTest, ItsBallShiftsItAndItsHeadTiltsIt) {
   EXPECT_GT(outside(), 1.1 * half) << "the half towards the eye is kept";
 }
 
-TEST_F(ClipPlaneTest, WhatIsCutAwayIsNotTouched) {
+TEST_F(ClipPlaneTest, HidesTheCutPartFromThePointer) {
   if (IsSkipped()) return;
   pointAt(inView({40, 40}));
   ASSERT_TRUE(view().underPointer().has_value());

@@ -1,4 +1,4 @@
-// Every word can be read, in the light theme and in the dark one.
+// Every text is legible in the light and in the dark theme.
 #include <cmath>
 #include <functional>
 #include <map>
@@ -10,7 +10,7 @@
 namespace patina {
 namespace {
 
-// WCAG 2.1: relative luminance, and the contrast of two.
+// WCAG 2.1: relative luminance, and the contrast of two colours.
 double luminance(QRgb color) {
   const auto linear = [](int byte) {
     const double c = byte / 255.0;
@@ -24,7 +24,7 @@ double contrast(QRgb a, QRgb b) {
   return (std::max(la, lb) + 0.05) / (std::min(la, lb) + 0.05);
 }
 
-// The ground is what there is most of, the text what stands out most.
+// The ground is the most frequent colour, the text the one with the largest contrast.
 double contrastOf(const QImage& image) {
   std::map<QRgb, int> count;
   for (int y = 0; y < image.height(); ++y)
@@ -40,7 +40,7 @@ double contrastOf(const QImage& image) {
   return 1;
 }
 
-// Drawn four times as large, where the stems of letters are whole pixels.
+// The text is drawn four times as large, so that stems of letters are whole pixels.
 double contrastOf(QWidget& widget) {
   QImage image(4 * widget.size(), QImage::Format_RGB32);
   image.setDevicePixelRatio(4);
@@ -69,7 +69,7 @@ class Contrast : public WindowTest, public ::testing::WithParamInterface<Theme> 
     WindowTest::SetUp();
     if (IsSkipped()) return;
     window_.reset();
-    // The theme changes while the window is there.
+    // The theme changes while the window is open.
     applyStyle(application(), GetParam() == Theme::dark ? Theme::light : Theme::dark);
     window_ = std::make_unique<MainWindow>();
     window_->resize(1280, 800);
@@ -91,12 +91,12 @@ class Contrast : public WindowTest, public ::testing::WithParamInterface<Theme> 
   }
 };
 
-TEST_P(Contrast, OfEveryWordIsFourAndAHalf) {
+TEST_P(Contrast, IsAtLeastFourAndAHalfForEveryText) {
   for (const char* property : {"Friction", "Damping", "Tip radius"}) addProperty(property);
   setRow("stiffness", 333);
   ASSERT_TRUE(waitUntil([&] { return edits().status().edits.size() > 0; }, 20000));
   edits().thread().undo();
-  emit documents().said({QStringLiteral("a warning"), true});
+  emit documents().notified({QStringLiteral("a warning"), true});
   for (const Layer layer : {Layer::slice, Layer::iso}) show(layer, true);
   applyStyle(application(), GetParam());
   int seen = 0;
@@ -124,7 +124,7 @@ TEST_P(Contrast, OfEveryWordIsFourAndAHalf) {
   EXPECT_GT(seen, 300);
 }
 
-TEST_P(Contrast, OfThePicturesWordsToo) {
+TEST_P(Contrast, IsAtLeastFourAndAHalfForTextInThePicture) {
   find<QToolButton>("mode_magnetic")->click();
   show(Layer::slice, true);
   ASSERT_TRUE(waitUntil([&] { return edits().status().edits.size() > 0; }, 20000));

@@ -1,4 +1,4 @@
-// Small things that a hand stumbles over, done with pointer and keys.
+// Small controls that users often miss, by pointer and keys.
 #include <QCheckBox>
 #include <QDoubleSpinBox>
 #include <QListWidget>
@@ -40,35 +40,36 @@ class Controls : public DrivenWindow {
   }
 };
 
-TEST_F(Controls, TheCrossOfARowTakesItAwayByPointer) {
+TEST_F(Controls, CrossRemovesARowByPointer) {
   addFriction();
   click(*crossOf("friction_static"));
   EXPECT_TRUE(frictionGoes());
 }
 
-TEST_F(Controls, TheCrossOfARowTakesItAwayByKey) {
+TEST_F(Controls, CrossRemovesARowByKey) {
   addFriction();
   crossOf("friction_static")->setFocus(Qt::TabFocusReason);
   type(' ');
   EXPECT_TRUE(frictionGoes());
-  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::feel) << "Space was the button's";
+  EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::feel)
+      << "Space belonged to the button";
 }
 
-TEST_F(Controls, SpaceOnACheckBoxTogglesItAndKeepsTheTool) {
+TEST_F(Controls, SpaceTogglesACheckBoxAndKeepsTheTool) {
   openTab("show");
   wait(50);
   auto* slice = find<QCheckBox>("slice");
   slice->setFocus(Qt::TabFocusReason);
   type(' ');
   EXPECT_TRUE(slice->isChecked());
-  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::feel);
+  EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::feel);
   click(view());
   type(' ');
   EXPECT_TRUE(slice->isChecked());
-  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::navigate);
+  EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::navigate);
 }
 
-TEST_F(Controls, TheSwatchShowsTheColourThatIsPainted) {
+TEST_F(Controls, SwatchShowsThePaintColour) {
   type(QStringLiteral("p"));
   wait(100);
   auto* now = find<QToolButton>("brush_color");
@@ -81,7 +82,7 @@ TEST_F(Controls, TheSwatchShowsTheColourThatIsPainted) {
             QStringLiteral("#4a9447"));
 }
 
-TEST_F(Controls, EscapeTakesAStrokeBackAndTheNextOneIsPainted) {
+TEST_F(Controls, EscapeUndoesAStrokeAndTheNextOnePaints) {
   type(QStringLiteral("p"));
   wait(200);
   pointAt(inView({-60, 0}));
@@ -99,7 +100,7 @@ TEST_F(Controls, EscapeTakesAStrokeBackAndTheNextOneIsPainted) {
   EXPECT_TRUE(editsAre(1));
 }
 
-TEST_F(Controls, TheHistorySpeaksInWordsAndRoundedUnits) {
+TEST_F(Controls, HistoryShowsWordsAndRoundedUnits) {
   setRow("stiffness", 250);
   ASSERT_TRUE(editsAre(1));
   find<QToolButton>("mode_offset")->click();
@@ -116,7 +117,7 @@ TEST_F(Controls, TheHistorySpeaksInWordsAndRoundedUnits) {
   EXPECT_EQ(words[1], QStringLiteral("Offset 1.24 mm"));
   EXPECT_TRUE(words[2].contains(QRegExp("^Painted colour, [\\d.]+ mm$"))) << words[2].toStdString();
   EXPECT_EQ(words[3], QStringLiteral("Turn sphere by 30° about z"));
-  // The one that holds begins where the others do.
+  // The current row's text begins at the same position as the others'.
   auto* list = find<HistoryPanel>();
   list->setCurrentRow(0);
   const auto begins = [&](int row) {
@@ -129,7 +130,7 @@ TEST_F(Controls, TheHistorySpeaksInWordsAndRoundedUnits) {
   EXPECT_NEAR(begins(0), begins(2), 2);
 }
 
-TEST_F(Controls, TheTitleNamesTheMeshFromTheFirstSecond) {
+TEST_F(Controls, TitleNamesTheMeshFromTheFirstSecond) {
   const auto path = saved(torus(0.035, 0.015, 400, 200), "torus.obj");
   QString title;
   QObject::connect(find<SceneLoader>(), &SceneLoader::meshReady, window_.get(), [&] {
@@ -140,7 +141,7 @@ TEST_F(Controls, TheTitleNamesTheMeshFromTheFirstSecond) {
   EXPECT_TRUE(title.startsWith(QStringLiteral("torus.obj"))) << title.toStdString();
 }
 
-TEST_F(Controls, ADoubleClickLaysABallOnTheSurface) {
+TEST_F(Controls, DoubleClickPutsABallOnTheSurface) {
   addProperty("Tip radius");
   setRow("tip_radius", 2);
   ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.haptics.tip_radius == 2e-3; }));
@@ -152,7 +153,7 @@ TEST_F(Controls, ADoubleClickLaysABallOnTheSurface) {
   EXPECT_LT(sample.force.norm(), 0.05);
 }
 
-TEST_F(Controls, ADoubleClickBeginsAnewOnTheSideThatIsSeen) {
+TEST_F(Controls, DoubleClickRestartsOnTheVisibleSide) {
   doubleClickAt(inView({0, 0}));
   wheelAt(inView({0, 0}), 6);
   wait(300);
@@ -166,7 +167,7 @@ TEST_F(Controls, ADoubleClickBeginsAnewOnTheSideThatIsSeen) {
   EXPECT_LT(sample.force.norm(), 0.1);
 }
 
-TEST_F(Controls, ABallIsNotPushedThroughAThinSheet) {
+TEST_F(Controls, BallIsNotPushedThroughAThinSheet) {
   ASSERT_TRUE(open(saved(sheet(0.06, 0.06, 30), "sheet.obj")));
   addProperty("Tip radius");
   setRow("tip_radius", 1);
@@ -182,12 +183,12 @@ TEST_F(Controls, ABallIsNotPushedThroughAThinSheet) {
   EXPECT_GT(sample.force.z(), 1);
 }
 
-TEST_F(Controls, AMeshWhoseYIsUpIsTurnedWhenAskedAndThatIsRemembered) {
+TEST_F(Controls, TurnsAMeshWithYUpOnRequestAndRemembersIt) {
   LoadRequest request;
   request.path = saved(box(Vec3(0.02, 0.06, 0.04)), "tall.obj");
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, window_.get(), [&] { ready = true; });
-  documents().open(request); // in millimetres it is odd
+  documents().open(request); // in millimetres the size is implausible
   ASSERT_TRUE(waitUntil([&] { return find<QCheckBox>("y_is_up") != nullptr; }, 10000));
   wait(300);
   EXPECT_FALSE(find<QCheckBox>("y_is_up")->isChecked());
@@ -197,12 +198,12 @@ TEST_F(Controls, AMeshWhoseYIsUpIsTurnedWhenAskedAndThatIsRemembered) {
   const Vec3 size = bounds(*edits().scene()->mesh).sizes();
   EXPECT_GT(size.z(), 2.9 * size.x()) << "60 of 20 by 40";
   EXPECT_TRUE(find<QAction>("y_up")->isChecked());
-  documents().setAsks(false);
+  documents().setInteractive(false);
   window_ = std::make_unique<MainWindow>();
   EXPECT_TRUE(find<QAction>("y_up")->isChecked()) << "in the next session, too";
 }
 
-TEST_F(Controls, ATurnedObjectFillsThePictureAgainWhenAsked) {
+TEST_F(Controls, FitsATurnedObjectToThePictureOnRequest) {
   ASSERT_TRUE(open(saved(box(Vec3(0.02, 0.02, 0.1)), "rod.obj")));
   type(QStringLiteral("3")); // along y
   type(QStringLiteral("f"));
@@ -225,7 +226,7 @@ TEST_F(Controls, ATurnedObjectFillsThePictureAgainWhenAsked) {
   EXPECT_GT(right - left, 0.5);
 }
 
-TEST_F(Controls, APressFollowsTheSurfaceWithOneForce) {
+TEST_F(Controls, PressFollowsTheSurfaceWithConstantForce) {
   trigger("tool_press");
   wait(100);
   setRow("press_force", 0.6);

@@ -1,4 +1,4 @@
-// Desks: what is at hand on each, and that a person's arrangement stays.
+// Desks: the tools and panels of each, and that the user's arrangement stays.
 #include <fstream>
 
 #include <QScreen>
@@ -30,37 +30,37 @@ class Desks : public DrivenWindow {
   }
 };
 
-TEST_F(Desks, FeelLeavesThePictureItsRoom) {
+TEST_F(Desks, FeelLeavesRoomForThePicture) {
   saveScreen("feel");
   EXPECT_EQ(desk(), Desk::feel);
   EXPECT_GE(view().width(), 930);
   EXPECT_GE(view().height(), 680);
 }
 
-TEST_F(Desks, TheBarGoesFromOneToTheOtherAndToolsGoAlong) {
+TEST_F(Desks, BarSwitchesDesksAndKeepsTools) {
   EXPECT_FALSE(find<BrushPanel>()->isVisible());
   go("paint");
   saveScreen("paint");
   EXPECT_EQ(desk(), Desk::paint);
   EXPECT_TRUE(find<BrushPanel>()->isVisible());
-  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{Handling::paint, Tool::color}));
+  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{InteractionMode::paint, Tool::color}));
   go("analyse");
   wait(300);
   saveScreen("analyse");
   EXPECT_TRUE(find<DisplayPanel>()->isVisible());
   EXPECT_TRUE(find<ForcePlot>()->isVisible());
-  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{Handling::feel, {}}));
-  type(QStringLiteral("h")); // relief, which is Paint's
+  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{InteractionMode::press, {}}));
+  type(QStringLiteral("h")); // relief, a tool of Paint
   EXPECT_EQ(desk(), Desk::paint);
   EXPECT_TRUE(find<ReliefPanel>()->isVisible());
   type('1', kControl);
   EXPECT_EQ(desk(), Desk::feel);
   EXPECT_FALSE(find<ReliefPanel>()->isVisible());
   type('2', kControl);
-  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{Handling::paint, Tool::relief}));
+  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{InteractionMode::paint, Tool::relief}));
 }
 
-TEST_F(Desks, TabsBringTheirCardsAndFoldAtASecondClick) {
+TEST_F(Desks, TabsShowTheirCardsAndFoldAtASecondClick) {
   clickOn("tab_device");
   EXPECT_TRUE(find<DevicePanel>()->isVisible());
   EXPECT_FALSE(find<HapticsPanel>()->isVisible());
@@ -82,7 +82,7 @@ TEST_F(Desks, TabsBringTheirCardsAndFoldAtASecondClick) {
   EXPECT_EQ(view().height(), high);
 }
 
-TEST_F(Desks, TheColumnIsWidenedByItsEdgeAndNoFartherThanItMay) {
+TEST_F(Desks, ColumnWidensByItsEdgeUpToItsLimit) {
   QWidget& handle = *find<QSplitter>("across")->handle(1);
   const QPoint edge = handle.mapToGlobal(handle.rect().center());
   drag(edge, edge - QPoint(100, 0));
@@ -91,7 +91,7 @@ TEST_F(Desks, TheColumnIsWidenedByItsEdgeAndNoFartherThanItMay) {
   EXPECT_EQ(column().width(), 480);
 }
 
-TEST_F(Desks, ANarrowWindowFoldsTheColumnToIconsUntilItIsAskedFor) {
+TEST_F(Desks, NarrowWindowFoldsTheColumnToIconsUntilAClick) {
   takeSize(1024, 700);
   EXPECT_LT(column().width(), 60);
   saveScreen("narrow");
@@ -102,7 +102,7 @@ TEST_F(Desks, ANarrowWindowFoldsTheColumnToIconsUntilItIsAskedFor) {
   EXPECT_GE(column().width(), 300);
 }
 
-TEST_F(Desks, TheStatusLineHasRoomForItsStages) {
+TEST_F(Desks, StatusLineHasRoomForItsStages) {
   addProperty("Friction");
   addProperty("Damping");
   const auto* stages = dynamic_cast<ElidedLabel*>(find<QLabel>("stages"));
@@ -113,10 +113,10 @@ TEST_F(Desks, TheStatusLineHasRoomForItsStages) {
   EXPECT_FALSE(stages->elides()) << stages->text().toStdString();
 }
 
-TEST_F(Desks, MessagesLeaveThePictureWhereItIs) {
+TEST_F(Desks, MessagesDoNotMoveThePicture) {
   const QRect before = view().geometry();
   const QPoint at = view().mapToGlobal(QPoint());
-  emit documents().said({QStringLiteral("The mesh is open at 12 edges"), true});
+  emit documents().notified({QStringLiteral("The mesh is open at 12 edges"), true});
   wait(50);
   EXPECT_TRUE(find<QLabel>("notice")->isVisible());
   EXPECT_EQ(view().geometry(), before);
@@ -124,7 +124,7 @@ TEST_F(Desks, MessagesLeaveThePictureWhereItIs) {
   clickOn("dismiss");
   EXPECT_FALSE(find<QLabel>("notice")->isVisible());
   clickOn("page_messages");
-  emit documents().said({QStringLiteral("It was read"), true});
+  emit documents().notified({QStringLiteral("It was read"), true});
   wait(50);
   EXPECT_FALSE(find<QLabel>("notice")->isVisible()) << "it is in the list that is open";
   EXPECT_TRUE(find<MessagePanel>()
@@ -133,7 +133,7 @@ TEST_F(Desks, MessagesLeaveThePictureWhereItIs) {
                   .contains(QStringLiteral("12 edges")));
 }
 
-TEST_F(Desks, SizesTabsAndTheDeskAreThereAtTheNextStart) {
+TEST_F(Desks, RestoreSizesTabsAndTheDeskAtTheNextStart) {
   window_->restorePlace(); // nothing is kept yet
   takeSize(1340, 820);
   go("analyse");
@@ -147,7 +147,7 @@ TEST_F(Desks, SizesTabsAndTheDeskAreThereAtTheNextStart) {
   clickOn("tab_device");
   clickOn("tab_device"); // folds
   go("analyse");
-  documents().setAsks(false);
+  documents().setInteractive(false);
   ASSERT_TRUE(window_->close());
   window_ = std::make_unique<MainWindow>();
   window_->restorePlace();
@@ -162,8 +162,7 @@ TEST_F(Desks, SizesTabsAndTheDeskAreThereAtTheNextStart) {
   EXPECT_LT(column().width(), 60);
 }
 
-TEST_F(Desks, AMeshThatIsOpenedIsSeen) {
-  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+TEST_F(Desks, ShowAMeshThatIsOpened) {
   const auto ball = saved(icosphere(20, 12), "ball.obj");
   const auto openBall = [&] {
     bool ready = false;
@@ -183,11 +182,10 @@ TEST_F(Desks, AMeshThatIsOpenedIsSeen) {
   go("texture");
   clickOn("tab_library");
   openBall();
-  EXPECT_EQ(desk(), Desk::texture) << "it is seen there";
+  EXPECT_EQ(desk(), Desk::texture) << "it is visible there";
 }
 
-TEST_F(Desks, AWorkspaceThatIsOpenAlreadyComesInSight) {
-  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+TEST_F(Desks, ShowAWorkspaceThatIsAlreadyOpen) {
   saving().saveTo(QString::fromStdString((folder_ / "work").string()));
   ASSERT_TRUE(waitUntil([&] { return edits().status().folder.has_value(); }, 20000));
   go("texture");
@@ -195,8 +193,7 @@ TEST_F(Desks, AWorkspaceThatIsOpenAlreadyComesInSight) {
   EXPECT_TRUE(waitUntil([&] { return desk() == Desk::feel; }, 5000));
 }
 
-TEST_F(Desks, ADeskThatIsChosenWhileAMeshIsReadStays) {
-  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+TEST_F(Desks, KeepADeskChosenWhileAMeshLoads) {
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
   documents().open(requestFor(saved(icosphere(0.02, 12), "ball.obj")));
@@ -205,8 +202,7 @@ TEST_F(Desks, ADeskThatIsChosenWhileAMeshIsReadStays) {
   EXPECT_EQ(desk(), Desk::texture);
 }
 
-TEST_F(Desks, WhatComesToNothingLeavesTheDesk) {
-  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+TEST_F(Desks, StayIfLoadingFailsOrIsCancelled) {
   go("texture");
   std::ofstream(folder_ / "bad.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999\n";
   bool failed = false, cancelled = false, previewed = false;
@@ -216,11 +212,11 @@ TEST_F(Desks, WhatComesToNothingLeavesTheDesk) {
   EXPECT_EQ(desk(), Desk::texture);
   wait(200);
   if (QWidget* box = QApplication::activeModalWidget()) box->close();
-  // And of what is seen before it is cancelled.
+  // A load that is cancelled after its preview leaves the desk, too.
   QObject::connect(&documents(), &DocumentController::cancelled, [&] { cancelled = true; });
   QObject::connect(&documents(), &DocumentController::previewed, window_.get(), [&] {
     previewed = true;
-    EXPECT_EQ(desk(), Desk::feel) << "its mesh is seen";
+    EXPECT_EQ(desk(), Desk::feel) << "its mesh is visible";
     documents().cancel();
   });
   documents().open(requestFor(saved(icosphere(0.02, 40), "ball.obj")));
@@ -229,8 +225,7 @@ TEST_F(Desks, WhatComesToNothingLeavesTheDesk) {
   EXPECT_EQ(desk(), Desk::texture);
 }
 
-TEST_F(Desks, AWindowOfADeskWithoutAPictureBeginsAtThePage) {
-  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without scans";
+TEST_F(Desks, StartAtThePageIfTheDeskHasNoPicture) {
   for (const Desk last : {Desk::scan, Desk::texture, Desk::align}) {
     QSettings().setValue(QStringLiteral("window/desk"), static_cast<int>(last));
     QSettings().setValue(QStringLiteral("desks/texture/tab"), static_cast<int>(Tab::library));
@@ -242,7 +237,7 @@ TEST_F(Desks, AWindowOfADeskWithoutAPictureBeginsAtThePage) {
   }
 }
 
-TEST_F(Desks, ANarrowWindowIsAsWideAtTheNextStart) {
+TEST_F(Desks, RestoreANarrowWindowsWidth) {
   for (const DeskRow& row : deskRows()) {
     QSettings().setValue(QStringLiteral("window/size"), QSize(1012, 656));
     QSettings().setValue(QStringLiteral("window/desk"), static_cast<int>(row.desk));
@@ -252,13 +247,13 @@ TEST_F(Desks, ANarrowWindowIsAsWideAtTheNextStart) {
     wait(300);
     EXPECT_EQ(window_->width(), 1012) << row.name;
     window_->controllers().desks.choose(row.desk);
-    window_->controllers().desks.foldColumn(false);
+    window_->controllers().desks.foldSidePanel(false);
     wait(300);
     EXPECT_EQ(window_->width(), 1012) << row.name;
   }
 }
 
-TEST_F(Desks, AWindowThatWasLargerIsAllOnThisScreenWithItsFrame) {
+TEST_F(Desks, FitALargerWindowOnThisScreenWithItsFrame) {
   QSettings().setValue(QStringLiteral("window/size"), QSize(6000, 4000));
   window_ = std::make_unique<MainWindow>();
   window_->restorePlace();

@@ -1,5 +1,5 @@
-// A window that is driven as a person drives it: by pointer and keys of the window system, under a
-// window manager.
+// A window that is driven like by a user: by pointer and keys of the window system, under a window
+// manager.
 #pragma once
 
 #include <chrono>
@@ -8,6 +8,7 @@
 #include <QAbstractButton>
 #include <QAbstractNativeEventFilter>
 #include <QFileDialog>
+#include <QMenuBar>
 #include <QToolBar>
 #include <QWindow>
 
@@ -18,7 +19,7 @@
 
 namespace patina {
 
-// Which mark of the hand has come to this program last.
+// Number of the hand's last mark that has reached this program.
 class MarkSeen : public QAbstractNativeEventFilter {
  public:
   bool nativeEventFilter(const QByteArray&, void* message, long*) override {
@@ -50,7 +51,7 @@ class DrivenWindow : public WindowTest {
     WindowTest::TearDown();
   }
 
-  // Its frame is drawn at the screen's corner: all of it can be reached.
+  // The frame is drawn at the screen's corner, so that all of it can be reached.
   void takeSize(int wide, int high) {
     window_->move(0, 0);
     window_->resize(wide, high);
@@ -62,24 +63,24 @@ class DrivenWindow : public WindowTest {
     wait(100);
   }
 
-  // Until all that the hand did has come to the window, however busy the machine is.
+  // Waits until all input events have reached the window, however busy the machine is.
   void settle() {
     const std::uint32_t number = ++marks_;
     hand_->mark(static_cast<std::uint32_t>(window_->winId()), number);
     EXPECT_TRUE(waitUntil([&] { return seen_.number >= number; }));
-    QApplication::processEvents(); // what came with it
+    QApplication::processEvents(); // processes events that came with it
   }
   void pointAt(const QPoint& screen) {
     const double scale = window_->devicePixelRatioF();
     hand_->moveTo(qRound(scale * screen.x()), qRound(scale * screen.y()));
-    wait(10); // a hand has a pace
+    wait(10); // a hand needs time
     settle();
   }
   void press(int button = 1) { hand_->button(button, true), wait(10), settle(); }
   void release(int button = 1) { hand_->button(button, false), wait(10), settle(); }
   void click(QWidget& widget) {
     ASSERT_TRUE(widget.isVisible()) << widget.objectName().toStdString();
-    const bool box = qobject_cast<QCheckBox*>(&widget) != nullptr; // it is its mark and words
+    const bool box = qobject_cast<QCheckBox*>(&widget) != nullptr; // the box and its label
     pointAt(box ? widget.mapToGlobal({8, widget.height() / 2})
                 : widget.mapToGlobal(widget.rect().center()));
     press();
@@ -91,16 +92,18 @@ class DrivenWindow : public WindowTest {
     ASSERT_NE(widget, nullptr) << name.toStdString();
     click(*widget);
   }
-  void clickAction(const QString& name) { // of the bar on top
+  // Clicks an action of the top bar.
+  void clickAction(const QString& name) {
     auto* action = find<QAction>(name);
     ASSERT_NE(action, nullptr) << name.toStdString();
     for (QWidget* widget : action->associatedWidgets())
       if (auto* bar = qobject_cast<QToolBar*>(widget)) return click(*bar->widgetForAction(action));
     FAIL() << "no bar has " << name.toStdString();
   }
-  void choose(QMenu& menu, const QString& words) { // that is open
+  // Chooses an entry of an open menu.
+  void choose(QMenu& menu, const QString& words) {
     ASSERT_TRUE(waitUntil([&] { return menu.isVisible(); }, 3000));
-    wait(200); // until the window manager has let it be
+    wait(200); // the window manager needs time
     for (QAction* action : menu.actions()) {
       if (action->text() != words) continue;
       pointAt(menu.mapToGlobal(menu.actionGeometry(action).center()));
@@ -109,12 +112,23 @@ class DrivenWindow : public WindowTest {
     }
     FAIL() << "the menu has no " << words.toStdString();
   }
-  // In the picture, from its middle.
+  // Chooses an entry of a menu of the window by two clicks.
+  void chooseInMenu(const QString& title, const QString& words) {
+    QMenuBar& bar = *window_->menuBar();
+    for (QAction* entry : bar.actions()) {
+      if (entry->text() != title) continue;
+      pointAt(bar.mapToGlobal(bar.actionGeometry(entry).center()));
+      press(), release();
+      return choose(*entry->menu(), words);
+    }
+    FAIL() << "there is no menu " << title.toStdString();
+  }
+  // Position in the picture, relative to its centre.
   QPoint inView(const QPoint& from_middle) { return view().mapToGlobal(middle() + from_middle); }
   void doubleClickAt(const QPoint& screen) {
     pointAt(screen);
-    wait(200); // what the pointer came over has seen it
-    // By a hand of its own: a picture drawn meanwhile would make two clicks of it.
+    wait(200); // widgets under the pointer get the event
+    // The clicks come from a thread of their own: drawing between them would split a double click.
     std::thread hand([this] {
       for (int i = 0; i < 4; ++i) {
         hand_->button(1, i % 2 == 0);
@@ -139,7 +153,7 @@ class DrivenWindow : public WindowTest {
     }
     settle();
   }
-  // What opens holds up who opened it: it is answered from beside.
+  // A dialog blocks the code that opened it: a timer answers it.
   template <typename Look, typename Act> void whenThere(Look look, Act act) {
     auto* timer = new QTimer(window_.get());
     QObject::connect(timer, &QTimer::timeout, window_.get(), [=] {
@@ -165,7 +179,8 @@ class DrivenWindow : public WindowTest {
     whenThere([] { return qobject_cast<Dialog*>(QApplication::activeModalWidget()); },
               std::move(act));
   }
-  void answerWithPath(const std::filesystem::path& path) { // the next question for a file
+  // Answers the next question for a file.
+  void answerWithPath(const std::filesystem::path& path) {
     whenAsked<QFileDialog>([this, text = QString::fromStdString(path.string())](QFileDialog&) {
       type(text);
       type(kEnter);

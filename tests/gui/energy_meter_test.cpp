@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/gui/servo/energy_meter.h"
+#include "app/gui/servo/live_plots.h"
 
 namespace patina {
 namespace {
@@ -17,9 +17,9 @@ ToolSample wallSample(double x, double velocity, double stiffness, double dampin
   return sample;
 }
 
-TEST(EnergyMeter, ASampledSpringPressedInEqualStepsTakesTheTriangleLessHalfAStep) {
-  // Steps of s down to depth n s: sum of K j s^2 for j < n = K s^2 n (n - 1) / 2 exactly; coming
-  // back the sum is of j <= n: what is given is K s^2 n more than was taken.
+TEST(EnergyMeter, SampledSpringTakesTheTriangleLessHalfAStep) {
+  // Steps of s down to depth n s: sum of K j s^2 for j < n = K s^2 n (n - 1) / 2 exactly; on the
+  // way back the sum is over j <= n: the given energy exceeds the taken one by K s^2 n.
   constexpr double kK = 1000, kStep = 1e-4;
   constexpr int kSteps = 40;
   EnergyMeter meter;
@@ -31,8 +31,8 @@ TEST(EnergyMeter, ASampledSpringPressedInEqualStepsTakesTheTriangleLessHalfAStep
   EXPECT_NEAR(meter.ledger.lowest_absorbed, meter.ledger.absorbed, 1e-15);
 }
 
-TEST(EnergyMeter, ADamperKeepsWhatItsForceDid) {
-  // Half a sine into the wall: work of B v over the way = B a^2 w pi / 2, to the order of T.
+TEST(EnergyMeter, DamperKeepsTheWorkOfItsForce) {
+  // Half a sine into the wall: work of B v along the path = B a^2 w pi / 2, to the order of T.
   constexpr double kB = 5, kA = 2e-3, kOmega = 20, kT = 1e-5;
   EnergyMeter meter;
   for (double t = 0; t < M_PI / kOmega; t += kT)
@@ -41,7 +41,7 @@ TEST(EnergyMeter, ADamperKeepsWhatItsForceDid) {
   EXPECT_NEAR(meter.ledger.absorbed, expected, 1e-3 * expected);
 }
 
-TEST(EnergyMeter, BeginsAtZeroWhereAForceBeginsIfItIsAskedTo) {
+TEST(EnergyMeter, StartsAtZeroWithAForceOnRequest) {
   for (const bool each : {false, true}) {
     EnergyMeter meter;
     meter.from_each_touch = each;
@@ -59,7 +59,7 @@ TEST(EnergyMeter, BeginsAtZeroWhereAForceBeginsIfItIsAskedTo) {
   }
 }
 
-TEST(EnergyMeter, WhatWasNotHeardIsNotCounted) {
+TEST(EnergyMeter, DoesNotCountMissedSamples) {
   EnergyMeter meter;
   ToolSample sample;
   sample.force = Vec3(1, 0, 0);

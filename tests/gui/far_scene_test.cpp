@@ -1,5 +1,5 @@
-// What lies far from the origin, as geo-referenced scans do, is picked, painted and felt as what
-// lies at it: by the same pointer, in the same picture.
+// Objects far from the origin, such as geo-referenced scans, are picked, painted and touched like
+// objects at the origin: by the same pointer, in the same picture.
 #include <cstdio>
 
 #include "geometry/mesh/shapes.h"
@@ -14,7 +14,7 @@ constexpr double kCube = 0.05;
 class FarScene : public DrivenWindow {
  protected:
   struct Done {
-    Vec3 felt_at = Vec3::Zero(), force = Vec3::Zero(); // places from the cube's middle
+    Vec3 haptic_at = Vec3::Zero(), force = Vec3::Zero(); // relative to the cube's centre
     std::vector<Vec3> stroke;
     QImage before, after;
   };
@@ -39,24 +39,24 @@ class FarScene : public DrivenWindow {
     find<QCheckBox>(QStringLiteral("tip"))->setChecked(false);
     wait(1000);
 
-    type(QStringLiteral("p")); // once for the panel that it opens, so that views are alike
+    type(QStringLiteral("p")); // opens its panel once, so that both views have the same size
     wait(800);
     type(QStringLiteral("q")); // press
     wait(800);
     find<ValueRow>("press_force")->findChild<QDoubleSpinBox*>()->setValue(1);
     pressAt({60, -40});
-    feel().startLog();
+    startLog();
     wait(300);
-    const std::vector<ToolSample> samples = feel().log().samples();
+    const std::vector<ToolSample> samples = logged();
     release();
     EXPECT_FALSE(samples.empty());
     if (samples.empty()) return done;
-    done.felt_at = samples.back().surface - middle_of_cube;
+    done.haptic_at = samples.back().surface - middle_of_cube;
     done.force = meanForce(samples);
 
     type(QStringLiteral("p")); // colour
     EXPECT_TRUE(waitUntil([&] { return !edits().thread().busy(); }));
-    pointAt(inView({400, 0})); // beside the cube
+    pointAt(inView({400, 0})); // next to the cube
     wait(800);
     done.before = view().grab().toImage();
     drag(inView({-60, 20}), inView({60, 20}), 1, 30);
@@ -73,7 +73,7 @@ class FarScene : public DrivenWindow {
       done.stroke.push_back(sample.position - middle_of_cube);
     return done;
   }
-  // Of the picture, the share that differs by more than 12 of 255.
+  // Returns the share of the pixels that differ by more than 12 of 255.
   static double apart(const QImage& a, const QImage& b) {
     int count = 0;
     for (int y = 0; y < a.height(); ++y)
@@ -86,18 +86,18 @@ class FarScene : public DrivenWindow {
   }
 };
 
-TEST_F(FarScene, IsPickedPaintedAndFeltAsAtTheOrigin) {
+TEST_F(FarScene, IsPickedPaintedAndTouchedAsAtTheOrigin) {
   const Done near = doneAt(Vec3::Zero(), "near");
   const Done far = doneAt(Vec3(4.5e6, 5.2e6, 300), "far");
   std::printf("felt at %.3f mm from there, force %.4f N and %.4f N; pictures differ in %.3f %% and "
               "%.3f %% of their pixels; %zu and %zu samples of the stroke\n",
-              1000 * (near.felt_at - far.felt_at).norm(), near.force.norm(), far.force.norm(),
+              1000 * (near.haptic_at - far.haptic_at).norm(), near.force.norm(), far.force.norm(),
               100 * apart(near.before, far.before), 100 * apart(near.after, far.after),
               near.stroke.size(), far.stroke.size());
   ASSERT_EQ(near.before.size(), far.before.size());
   EXPECT_GT(near.force.norm(), 0.7);
   EXPECT_LT((near.force - far.force).norm(), 0.01);
-  EXPECT_LT((near.felt_at - far.felt_at).norm(), 2e-5);
+  EXPECT_LT((near.haptic_at - far.haptic_at).norm(), 2e-5);
   EXPECT_LT(apart(near.before, far.before), 0.002);
   EXPECT_LT(apart(near.after, far.after), 0.004);
   EXPECT_GT(apart(near.before, near.after), 0.005);

@@ -1,4 +1,4 @@
-// The mouse feels: what a person without a device sees and gets.
+// The mouse as a haptic device: forces and pictures for a user without a device.
 #include <cmath>
 
 #include <vtkCallbackCommand.h>
@@ -20,21 +20,21 @@ class MouseFeels : public WindowTest {
     if (IsSkipped()) return;
     ASSERT_TRUE(open(saved(icosphere(kRadius, 30), "sphere.obj")));
   }
-  // However slowly pictures are drawn.
+  // The wait covers slow drawing.
   void settle() {
     wait(250);
     waitUntil([&] { return (feel().sample().tip - view().target()).norm() < 1e-6; }, 5000);
   }
 };
 
-TEST_F(MouseFeels, ADoubleClickSetsTheTipOntoTheSurface) {
+TEST_F(MouseFeels, DoubleClickSetsTheTipOntoTheSurface) {
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   settle();
   EXPECT_NEAR(view().target().norm(), kRadius, 2e-4);
   EXPECT_NEAR(feel().sample().tip.norm(), kRadius, 2e-4);
 }
 
-TEST_F(MouseFeels, TheDrawnToolIsHeldOutByContactWhileTheTipGoesIn) {
+TEST_F(MouseFeels, DrawnToolStaysOutsideWhileTheTipGoesIn) {
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   turnWheel(6);
   settle();
@@ -42,13 +42,13 @@ TEST_F(MouseFeels, TheDrawnToolIsHeldOutByContactWhileTheTipGoesIn) {
   ASSERT_TRUE(sample.contact);
   EXPECT_LT(sample.tip.norm(), kRadius - 1e-3);  // the true tip is inside
   EXPECT_NEAR(sample.vcp.norm(), kRadius, 1e-4); // the proxy is on the surface
-  EXPECT_GT(sample.force.dot(sample.vcp), 0);    // and the force points out
+  EXPECT_GT(sample.force.dot(sample.vcp), 0);    // the force points out
   const double expected = std::min(3.3, 500 * (kRadius - sample.tip.norm()));
   EXPECT_NEAR(sample.force.norm(), expected, 0.05 * expected);
   EXPECT_GT(forceShare(), 0.0005);
 }
 
-TEST_F(MouseFeels, WithoutContactThereIsNoForceAndNoArrow) {
+TEST_F(MouseFeels, NoForceAndNoArrowWithoutContact) {
   settle();
   EXPECT_FALSE(feel().sample().contact);
   EXPECT_EQ(feel().sample().force.norm(), 0);
@@ -65,7 +65,7 @@ TEST_F(MouseFeels, DraggingMovesTheTipUnderThePointerInTheViewPlane) {
   EXPECT_NEAR(moved.dot(eye), 0, 1e-9);
 }
 
-TEST_F(MouseFeels, TheWheelMovesTheTipInDepthOnly) {
+TEST_F(MouseFeels, WheelMovesTheTipInDepthOnly) {
   const Vec3 before = view().target();
   turnWheel(3);
   const Vec3 moved = view().target() - before;
@@ -90,8 +90,8 @@ TEST_F(MouseFeels, ShiftMiddleAndRightMoveTheCameraAndNotTheTip) {
   EXPECT_EQ(view().target(), target);
 }
 
-// Pictures that the window draws, not those that a test asks for.
-TEST_F(MouseFeels, EveryMoveOfTheCameraIsDrawnAtOnce) {
+// The test counts the pictures that the window draws by itself.
+TEST_F(MouseFeels, DrawsEveryCameraMoveAtOnce) {
   settle();
   int drawn = 0;
   const vtkNew<vtkCallbackCommand> count;
@@ -142,18 +142,18 @@ TEST_F(MouseFeels, EditsReachTheServoWhileItRuns) {
   EXPECT_NEAR(feel().sample().force.norm(), 0.5 * before, 0.05 * before);
 }
 
-TEST_F(MouseFeels, ALargeEditUnderAPressedTipRampsAndIsNoFault) {
+TEST_F(MouseFeels, LargeEditUnderAPressedTipRampsWithoutFault) {
   send(QEvent::MouseButtonDblClick, middle(), Qt::LeftButton, Qt::LeftButton);
   turnWheel(14);
   settle();
   ASSERT_TRUE(feel().sample().contact);
-  feel().startLog();
+  startLog();
   setRow("stiffness", 3000);
   setRow("force_limit", 20);
   ASSERT_TRUE(waitUntil([&] { return edits().scene()->scene.haptics.stiffness == 3000; }, 20000));
   wait(200);
   double jump = 0;
-  const auto samples = feel().log().samples();
+  const auto samples = logged();
   for (std::size_t i = 1; i < samples.size(); ++i) {
     ASSERT_FALSE(samples[i].fault);
     jump = std::max(jump, (samples[i].force - samples[i - 1].force).norm());
@@ -174,15 +174,15 @@ TEST_F(MouseFeels, FrictionHoldsTheProxyBackWhenTheTipMovesSideways) {
   settle();
   const ToolSample sample = feel().sample();
   ASSERT_TRUE(sample.contact);
-  // The line from tip to proxy leans against the motion: a force along the surface.
+  // The line from tip to proxy leans against the motion: the force has a part along the surface.
   const Vec3 along = sample.force - sample.force.dot(sample.normal) * sample.normal;
   EXPECT_GT(along.norm(), 0.05);
 }
 
-TEST_F(MouseFeels, ALogHoldsEveryTickAsItWas) {
-  feel().startLog();
+TEST_F(MouseFeels, LogHoldsEveryTick) {
+  startLog();
   wait(400);
-  const auto samples = feel().log().samples();
+  const auto samples = logged();
   ASSERT_GT(samples.size(), 200U);
   for (std::size_t i = 1; i < samples.size(); ++i) ASSERT_GT(samples[i].t, samples[i - 1].t);
 }

@@ -1,16 +1,14 @@
-// Open and Save As take a workspace for a file.
+// Open and Save As treat a workspace's folder as a file.
 #include <fstream>
 
 #include <QFileDialog>
 #include <QLineEdit>
 #include <QListView>
 
-#include "app/gui/loading/file_question.h"
+#include "app/gui/loading/workspace_file_dialog.h"
+#include "app/gui/scanning/scan_desk.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
-#ifdef PATINA_HAS_ACQUISITION
-#include "app/gui/scanning/scan_desk.h"
-#endif
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -27,14 +25,15 @@ class FileQuestions : public DrivenWindow {
   static QString text(const std::filesystem::path& path) {
     return QString::fromStdString(path.string());
   }
-  FileQuestion* question() {
-    FileQuestion* found = nullptr;
-    waitUntil([&] { return (found = find<FileQuestion>()) != nullptr && found->isVisible(); },
-              5000);
+  WorkspaceFileDialog* question() {
+    WorkspaceFileDialog* found = nullptr;
+    waitUntil(
+        [&] { return (found = find<WorkspaceFileDialog>()) != nullptr && found->isVisible(); },
+        5000);
     wait(200);
     return found;
   }
-  void enter(FileQuestion& dialog, const QString& name) {
+  void enter(WorkspaceFileDialog& dialog, const QString& name) {
     dialog.findChild<QLineEdit*>()->setText(name);
     dialog.findChild<QLineEdit*>()->setFocus();
     wait(100);
@@ -42,11 +41,11 @@ class FileQuestions : public DrivenWindow {
   }
 };
 
-TEST_F(FileQuestions, ADoubleClickOpensAWorkspace) {
+TEST_F(FileQuestions, DoubleClickOpensAWorkspace) {
   ASSERT_TRUE(open(folder_ / "sphere.obj"));
   EXPECT_FALSE(edits().status().folder.has_value());
   type('o', kControl);
-  FileQuestion* dialog = question();
+  WorkspaceFileDialog* dialog = question();
   ASSERT_NE(dialog, nullptr);
   dialog->setDirectory(text(folder_));
   wait(500);
@@ -66,31 +65,29 @@ TEST_F(FileQuestions, ADoubleClickOpensAWorkspace) {
   EXPECT_TRUE(waitUntil([&] { return edits().status().folder.has_value(); }, 10000));
 }
 
-TEST_F(FileQuestions, ItsNameAndEnterOpenItToo) {
+TEST_F(FileQuestions, NameAndEnterOpenAWorkspace) {
   ASSERT_TRUE(open(folder_ / "sphere.obj"));
   type('o', kControl);
-  FileQuestion* dialog = question();
+  WorkspaceFileDialog* dialog = question();
   ASSERT_NE(dialog, nullptr);
   enter(*dialog, text(folder_ / "sphere.patina"));
   EXPECT_TRUE(waitUntil([&] { return edits().status().folder.has_value(); }, 10000));
 }
 
-#ifdef PATINA_HAS_ACQUISITION
-TEST_F(FileQuestions, AScansFolderIsOpenedByItsNameAndEnter) {
+TEST_F(FileQuestions, NameAndEnterOpenAScanFolder) {
   std::filesystem::create_directory(folder_ / "scan");
   std::ofstream(folder_ / "scan" / "poses.tum") << "0 0 0 0.5 0 0 0 1\n0.1 0 0 0.5 0 0 0 1\n";
   type('o', kControl);
-  FileQuestion* dialog = question();
+  WorkspaceFileDialog* dialog = question();
   ASSERT_NE(dialog, nullptr);
   enter(*dialog, text(folder_ / "scan"));
   const auto& scan = window_->findChild<ScanDesk*>()->scan();
   EXPECT_TRUE(waitUntil([&] { return scan.files() != nullptr; }, 10000));
 }
-#endif
 
-TEST_F(FileQuestions, SaveAsSuggestsAFreeNameBesideWhatIsOpen) {
-  whenThere([this] { return find<FileQuestion>(); },
-            [this](FileQuestion& dialog) {
+TEST_F(FileQuestions, SaveAsSuggestsAFreeNameNextToTheOpenFile) {
+  whenThere([this] { return find<WorkspaceFileDialog>(); },
+            [this](WorkspaceFileDialog& dialog) {
               EXPECT_EQ(dialog.directory().path(), text(folder_));
               EXPECT_EQ(dialog.selectedFiles().front(), text(folder_ / "sphere-2.patina"));
               type(kEnter);
@@ -100,9 +97,9 @@ TEST_F(FileQuestions, SaveAsSuggestsAFreeNameBesideWhatIsOpen) {
   EXPECT_EQ(saving().name(), QStringLiteral("sphere-2.patina"));
 }
 
-TEST_F(FileQuestions, NoWorkspaceIsPutIntoAnother) {
-  whenThere([this] { return find<FileQuestion>(); },
-            [this](FileQuestion& dialog) {
+TEST_F(FileQuestions, PutNoWorkspaceIntoAnother) {
+  whenThere([this] { return find<WorkspaceFileDialog>(); },
+            [this](WorkspaceFileDialog& dialog) {
               enter(dialog, text(folder_ / "sphere.patina" / "inner.patina"));
             });
   EXPECT_FALSE(saving().saveDialog());

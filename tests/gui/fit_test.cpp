@@ -1,13 +1,11 @@
-// Every desk fits, at every size and scale that counts: nothing is cut, nothing lies over anything.
+// Every desk fits at all tested sizes and scales: nothing is cut or overlaps.
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QListWidget>
 
 #include <sys/wait.h>
 
-#ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
-#endif
 #include "app/gui/control/desk_controller.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
@@ -20,7 +18,7 @@ std::string inLines(const QStringList& list) {
   return ("\n  " + list.join("\n  ")).toStdString();
 }
 
-TEST_F(WindowTest, TheWalkSeesWhatIsCutCoveredAndMute) {
+TEST_F(WindowTest, MisfitsFindCutCoveredAndUnlabelledWidgets) {
   QWidget parent;
   parent.resize(300, 100);
   auto* cut = new QLabel(QStringLiteral("a line of some length"), &parent);
@@ -42,14 +40,14 @@ TEST_F(WindowTest, TheWalkSeesWhatIsCutCoveredAndMute) {
   for (QWidget* each : {static_cast<QWidget*>(cut), static_cast<QWidget*>(over),
                         static_cast<QWidget*>(number), static_cast<QWidget*>(beyond)})
     each->hide();
-  mute->setToolTip(QStringLiteral("Count from now"));
+  mute->setToolTip(QStringLiteral("Sets the energy to zero"));
   EXPECT_TRUE(test::misfits(parent).isEmpty());
   EXPECT_TRUE(test::muteControls(parent).isEmpty());
 }
 
 class Fit : public DrivenWindow {
  protected:
-  // All that a scene can show, with numbers of many digits.
+  // All layers of a scene, with numbers of many digits.
   void SetUp() override {
     DrivenWindow::SetUp();
     if (IsSkipped()) return;
@@ -67,11 +65,11 @@ class Fit : public DrivenWindow {
     for (const Layer layer : {Layer::slice, Layer::iso, Layer::stability}) show(layer, true);
     find<QDoubleSpinBox>("place_x")->setValue(-12345.67);
     ASSERT_TRUE(waitUntil([&] { return edits().status().edits.size() > 1; }, 30000));
-    emit documents().said({QStringLiteral("The workspace a_sphere_of_a_long_and_winding_name is "
-                                          "open in another program: edits are not kept in it"),
-                           true});
+    emit documents().notified(
+        {QStringLiteral("The workspace a_sphere_of_a_long_and_winding_name is "
+                        "open in another program: edits are not kept in it"),
+         true});
     feel().toggleRecording();
-#ifdef PATINA_HAS_ACQUISITION
     std::vector<PathSample> path(300);
     for (std::size_t i = 0; i < path.size(); ++i) {
       const double angle = 0.1 * static_cast<double>(i);
@@ -81,22 +79,21 @@ class Fit : public DrivenWindow {
     window_->findChild<AlignDesk*>()->setPath(
         QStringLiteral("a_path_of_a_long_and_winding_name.csv"), {path, {}});
     find<QPushButton>("align_pick")->click();
-#endif
     wait(400);
   }
   void checkAll(const std::string& size) {
     DeskController& desks = window_->controllers().desks;
     for (const DeskRow& row : deskRows()) {
       desks.choose(row.desk);
-      desks.foldColumn(false);
-      desks.foldDrawer(false);
+      desks.foldSidePanel(false);
+      desks.foldBottomPanel(false);
       const Tab first = row.tab;
       for (const TabRow& tab : tabRows()) {
         auto* button = find<QToolButton>(QStringLiteral("tab_") + tab.name);
         if (!button->isVisible()) continue;
         if (desks.tab() != tab.tab) button->click();
         for (const Panel page :
-             {Panel::forces, Panel::energy, Panel::history, Panel::messages, Panel::basin}) {
+             {Panel::forces, Panel::energy, Panel::history, Panel::messages, Panel::cost_profile}) {
           if (tab.tab != first && page != Panel::energy) continue;
           desks.open(page);
           wait(60);
@@ -109,14 +106,14 @@ class Fit : public DrivenWindow {
           wait(60);
           check(size + " tool " + card.name);
         }
-        find<ToolBar>()->choose({Handling::paint, Tool::color});
+        find<ToolBar>()->choose({InteractionMode::paint, Tool::color});
       }
       if (const char* folder = std::getenv("PATINA_PICTURES"))
         window_->grab().save(
             QStringLiteral("%1/%2_%3.png")
                 .arg(QString::fromUtf8(folder), QString::fromStdString(size), row.name));
-      desks.foldColumn(true);
-      desks.foldDrawer(true);
+      desks.foldSidePanel(true);
+      desks.foldBottomPanel(true);
       wait(60);
       check(size + ' ' + row.name + " folded");
     }
@@ -136,10 +133,10 @@ TEST_F(Fit, EveryDeskAtEverySize) {
   }
 }
 
-// In a program of its own, whose pixels are four.
+// This runs in a program of its own, with a scale of two.
 TEST_F(Fit, DISABLED_EveryDeskAtTwice) {
   ASSERT_EQ(window_->devicePixelRatioF(), 2);
-  takeSize(1280, 760); // with its frame 2560 x 1600 of the screen
+  takeSize(1280, 760); // its frame fills 2560 x 1600 of the screen
   checkAll("twice");
 }
 

@@ -1,4 +1,4 @@
-// How long after the hand the picture follows.
+// Delay from a motion of the hand to the picture.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -14,7 +14,7 @@
 namespace patina {
 namespace {
 
-// The window system's clock, which its events carry, is this one.
+// The window system's clock, which its events carry, equals this one.
 double nowMs() {
   return std::chrono::duration<double, std::milli>(
              std::chrono::steady_clock::now().time_since_epoch())
@@ -33,8 +33,8 @@ class FrameDelay : public DrivenWindow {
     bool eventFilter(QObject*, QEvent* event) override { return test_.eventFilter(event); }
     FrameDelay& test_;
   };
-  // A camera that is turned for some seconds at 125 events a second: from each event to the frame
-  // on the screen that shows it [ms].
+  // Turns the camera for some seconds at 125 events a second; returns the time from each event to
+  // the frame on the screen that shows it [ms].
   std::vector<double> delays(double seconds) {
     Filter filter(*this);
     view().installEventFilter(&filter);
@@ -87,13 +87,13 @@ class FrameDelay : public DrivenWindow {
   }
 
   bool drags_ = false;
-  bool in_full_ = false;            // not as while it moves
-  double rested_ = 0, refined_ = 0; // when the hand had stopped, when all was seen again [ms]
+  bool in_full_ = false;            // the last frame had full resolution
+  double rested_ = 0, refined_ = 0; // times of the hand's stop and of the full picture [ms]
   std::vector<double> handled_;
 };
 
-// What a frame takes with the machine as it is says what may be asked of it.
-TEST_F(FrameDelay, TheCameraFollowsTheHandSoon) {
+// The limit follows from the time of a frame on this machine.
+TEST_F(FrameDelay, CameraFollowsTheHandSoon) {
   double of_few = 0;
   for (const int frequency : {60, 224}) { // 72,000 and 1,003,520 triangles
     ASSERT_TRUE(open(saved(icosphere(0.03, frequency), "sphere.ply")));
@@ -107,7 +107,7 @@ TEST_F(FrameDelay, TheCameraFollowsTheHandSoon) {
     const double p95 = sorted[sorted.size() * 95 / 100];
     std::printf("%d triangles: p50 %.0f, p95 %.0f ms, max %.0f; a frame takes %.0f ms\n",
                 20 * frequency * frequency, ms.p50, p95, ms.max, frame);
-    // 60 and 250 ms on a machine of two cores that does nothing else.
+    // An idle machine of two cores takes 60 and 250 ms.
     EXPECT_LT(p95, of_few > 0 ? std::max(250.0, 4 * of_few) : std::max(60.0, 4 * frame + 20));
     of_few = p95;
     const double refined = refined_ - rested_;

@@ -1,9 +1,9 @@
-// The guide says how far a scan has come to a feel, leads to the next desk, and can be put away.
-#ifdef PATINA_HAS_ACQUISITION
+// The guide shows the progress from a scan to a touched texture, leads to the next desk, and can be
+// closed.
 #include <cmath>
 #include <cstdlib>
 
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/control/desk_controller.h"
 #include "app/gui/scanning/scan_desk.h"
@@ -31,7 +31,7 @@ class GuideStripTest : public DrivenWindow {
   }
 };
 
-TEST(GuideSteps, AreDoneWithAFigureEach) {
+TEST(GuideSteps, ShowOneFigureEachWhenDone) {
   for (const GuideStep& open : guideSteps({})) {
     EXPECT_FALSE(open.done);
     EXPECT_TRUE(open.figure.isEmpty());
@@ -45,19 +45,19 @@ TEST(GuideSteps, AreDoneWithAFigureEach) {
     EXPECT_TRUE(steps[i].done);
     EXPECT_EQ(steps[i].figure, figures[i]) << steps[i].figure.toStdString();
   }
-  // A fit that may as well lie elsewhere is none to build on.
+  // A fit with an equally good alternative does not count as done.
   const QString why = QStringLiteral("Not unique: another place fits as well");
   const GuideStep doubtful = guideSteps({0, 0, 1203, 70e-6, 0, 0, why})[2];
   EXPECT_FALSE(doubtful.done);
   EXPECT_EQ(doubtful.tip, why);
-  EXPECT_EQ(doubtful.figure, QStringLiteral("0.07\u00a0mm off, not sure"));
-  // A force on a surface without a texture is not what the job is about.
+  EXPECT_EQ(doubtful.figure, QStringLiteral("0.07\u00a0mm off, uncertain"));
+  // A force on a surface without a texture does not complete the guide.
   EXPECT_FALSE(guideSteps({0, 0, 0, {}, 0, 0.8})[4].done);
 }
 
-TEST_F(GuideStripTest, LeadsByClicksAndIsPutAwayAndBroughtBack) {
+TEST_F(GuideStripTest, LeadsByClicksAndClosesAndOpensAgain) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
-  EXPECT_FALSE(strip().isVisible()); // Feel is no desk of the job
+  EXPECT_FALSE(strip().isVisible()); // Feel is no desk of the guide
   clickAction("desk_scan");
   EXPECT_TRUE(strip().isVisible());
   EXPECT_TRUE(step(0).startsWith(QStringLiteral("○")));
@@ -75,12 +75,13 @@ TEST_F(GuideStripTest, LeadsByClicksAndIsPutAwayAndBroughtBack) {
   EXPECT_TRUE(GuideStrip().isOpen());
 }
 
-// A scan of one's own, from its folder to a texture on the mesh.
-TEST_F(GuideStripTest, AScanOfOnesOwnComesToATextureStepByStep) {
+// A user's own scan, from its folder to a texture on the mesh.
+TEST_F(GuideStripTest, LeadsAUsersScanToATexture) {
   TriangleMesh body = icosphere(1, 24);
   for (Vec3& p : body.positions) {
     const double knob = 0.35 * std::exp(-8 * (p - Vec3(0.5, 0.4, 0.77)).squaredNorm());
-    // Lumps all over, or a part of it would fit at several places, and be called in doubt.
+    // The surface has lumps all over: without them a part would fit at several poses and be
+    // reported as ambiguous.
     const double lumps =
         0.12 * std::sin(6 * p.x() + 1) * std::cos(5 * p.y() - 0.4) * std::cos(4 * p.z() + 0.7);
     p = 1000 * (1 + knob + lumps) * Vec3(0.06 * p.x(), 0.042 * p.y(), 0.027 * p.z()); // mm
@@ -104,7 +105,7 @@ TEST_F(GuideStripTest, AScanOfOnesOwnComesToATextureStepByStep) {
   clickOn("align_begin");
   wait(500);
   EXPECT_TRUE(step(2).startsWith(QStringLiteral("○"))) << step(2).toStdString();
-  // Near where it belongs by six values; the rest is the fit's.
+  // Six values bring the path near its pose; the fit does the rest.
   const Pose belongs = readPoseAt(scan / "truth.json", "mesh_from_camera");
   const PoseValues values = valuesOf(belongs);
   constexpr const char* kRows[] = {"align_x", "align_y", "align_z",
@@ -115,11 +116,11 @@ TEST_F(GuideStripTest, AScanOfOnesOwnComesToATextureStepByStep) {
   wait(600);
   clickOn("align_fit");
   ASSERT_TRUE(waitUntil([&] { return !align.work(); }, 60000));
-  const Vec3 middle = align.alignment().middle();
+  const Vec3 middle = align.alignment().centroid();
   EXPECT_LT((belongs * align.alignment().pose().inverse() * middle - middle).norm(), 1.5e-3);
   EXPECT_TRUE(step(2).startsWith(QStringLiteral("✓")))
       << step(2).toStdString() << ": " << find<QLabel>("align_found")->text().toStdString();
-  wait(200); // the strip makes room for the new words
+  wait(200); // the strip resizes to the new words
   clickOn("guide_3");
   ASSERT_EQ(desk(), Desk::texture);
   clickOn("tab_library");
@@ -135,4 +136,3 @@ TEST_F(GuideStripTest, AScanOfOnesOwnComesToATextureStepByStep) {
 
 } // namespace
 } // namespace patina
-#endif

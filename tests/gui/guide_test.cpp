@@ -1,4 +1,4 @@
-// The user guide says what the window does: keys, captions and pictures are compared.
+// The user guide matches the window: keys, captions and pictures are compared.
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -24,7 +24,7 @@ std::string guide(const std::string& name) {
   return text.str();
 }
 
-TEST(Guide, ItsPicturesAreThereAndSmall) {
+TEST(Guide, PicturesExistAndAreSmall) {
   for (const char* name : {"user_guide.md", "tutorial.md"}) {
     const std::string text = guide(name);
     ASSERT_FALSE(text.empty()) << name;
@@ -55,7 +55,7 @@ TEST_F(GuideOfTheWindow, NamesEveryKeyOfTheMenus) {
   EXPECT_GE(keys, 9);
 }
 
-TEST_F(GuideOfTheWindow, NamesEveryPanelAndEveryThingThatCanBeShown) {
+TEST_F(GuideOfTheWindow, NamesEveryPanelAndEveryLayer) {
   const QString text = QString::fromStdString(guide("user_guide.md")).toLower();
   for (const QGroupBox* card : window_->findChildren<QGroupBox*>())
     EXPECT_TRUE(text.contains(card->title().toLower())) << card->title().toStdString();

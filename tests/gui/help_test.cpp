@@ -1,4 +1,4 @@
-// What a person who does not know the menus by heart finds.
+// A user finds commands by words, keys and the guide.
 #include <QDialog>
 #include <QLineEdit>
 #include <QListWidget>
@@ -32,7 +32,7 @@ class Help : public DrivenWindow {
   }
 };
 
-TEST_F(Help, AWordFindsAnActionAndReturnDoesIt) {
+TEST_F(Help, WordFindsAnActionAndReturnRunsIt) {
   ASSERT_FALSE(find<QAction>("orthographic")->isChecked());
   QListWidget* list = search(QStringLiteral("orthographic"));
   ASSERT_NE(list, nullptr);
@@ -42,17 +42,17 @@ TEST_F(Help, AWordFindsAnActionAndReturnDoesIt) {
   EXPECT_TRUE(waitUntil([&] { return find<QAction>("orthographic")->isChecked(); }, 3000));
 }
 
-TEST_F(Help, WhatCannotBeDoneIsGreyAndNotDone) {
+TEST_F(Help, DisabledActionsAreGreyAndDoNotRun) {
   QListWidget* list = search(QStringLiteral("undo"));
   ASSERT_NE(list, nullptr);
   ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
   EXPECT_FALSE(list->item(0)->flags() & Qt::ItemIsEnabled);
   type(kEnter);
   wait(100);
-  EXPECT_NE(find<QWidget>("action_search"), nullptr) << "still there, as nothing was done";
+  EXPECT_NE(find<QWidget>("action_search"), nullptr) << "still there, because nothing was done";
 }
 
-TEST_F(Help, TheGuideIsTheOneOfTheDocuments) {
+TEST_F(Help, GuideEqualsTheDocument) {
   QListWidget* list = search(QStringLiteral("user guide"));
   ASSERT_NE(list, nullptr);
   ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
@@ -80,7 +80,7 @@ TEST_F(Help, MouseAndKeysFitOnASmallScreen) {
   EXPECT_LE(size.width(), 900);
 }
 
-TEST_F(Help, AnExportIsWhatParaViewOpens) {
+TEST_F(Help, ExportOpensInParaView) {
   answerWithPath(folder_ / "out");
   QListWidget* list = search(QStringLiteral("paraview"));
   ASSERT_NE(list, nullptr);
@@ -91,18 +91,18 @@ TEST_F(Help, AnExportIsWhatParaViewOpens) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
 }
 
-TEST_F(Help, ExportsThatAreAskedForTogetherAreAllMadeAndTheSecondSaysThatItWaits) {
-  QStringList said;
-  QObject::connect(&saving(), &SaveController::said,
-                   [&](const Message& message) { said << message.words; });
+TEST_F(Help, QueuedExportsAreAllMadeAndTheSecondReportsItsWait) {
+  QStringList notified;
+  QObject::connect(&saving(), &SaveController::notified,
+                   [&](const Message& message) { notified << message.words; });
   for (const char* name : {"one", "two", "three"})
     saving().exportTo(QString::fromStdString((folder_ / name).string()));
   for (const char* name : {"one", "two", "three"})
     EXPECT_TRUE(waitUntil([&] { return std::filesystem::exists(folder_ / name / "scene.vtm"); }))
         << name;
-  ASSERT_TRUE(waitUntil([&] { return said.filter(QStringLiteral("Exported")).size() == 3; }));
-  EXPECT_EQ(said.filter(QStringLiteral("begins when the one before it is done")).size(), 2);
-  EXPECT_TRUE(said.filter(QStringLiteral("Exported")).front().contains(QStringLiteral("one")));
+  ASSERT_TRUE(waitUntil([&] { return notified.filter(QStringLiteral("Exported")).size() == 3; }));
+  EXPECT_EQ(notified.filter(QStringLiteral("starts after the running one")).size(), 2);
+  EXPECT_TRUE(notified.filter(QStringLiteral("Exported")).front().contains(QStringLiteral("one")));
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Opening: what is seen when, what is asked, and what stays when it fails.
+// Loading: the preview, the questions, and the state after a failure.
 #include <fstream>
 
 #include <QAbstractButton>
@@ -22,7 +22,7 @@ namespace {
 
 using Loading = WindowTest;
 
-TEST_F(Loading, TheMeshIsSeenBeforeTheFieldIsReady) {
+TEST_F(Loading, ShowsTheMeshBeforeTheFieldIsReady) {
   const auto path = saved(icosphere(0.03, 60), "sphere.obj");
   bool ready = false;
   double seen = -1;
@@ -37,14 +37,14 @@ TEST_F(Loading, TheMeshIsSeenBeforeTheFieldIsReady) {
   EXPECT_GT(surfaceShare(), 0.1);
 }
 
-TEST_F(Loading, NoSceneNoPanels) {
+TEST_F(Loading, ShowsNoPanelsWithoutAScene) {
   EXPECT_FALSE(find<HapticsPanel>()->isVisible());
   EXPECT_FALSE(find<DisplayPanel>()->isVisible());
   EXPECT_FALSE(feel().servo().running());
   EXPECT_EQ(surfaceShare(), 0);
 }
 
-TEST_F(Loading, AFailedLoadLeavesTheSceneAsItWas) {
+TEST_F(Loading, KeepsTheSceneIfALoadFails) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
   const auto before = edits().scene();
   std::ofstream(folder_ / "bad.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999\n";
@@ -64,7 +64,7 @@ TEST_F(Loading, AFailedLoadLeavesTheSceneAsItWas) {
   box->accept();
 }
 
-TEST_F(Loading, WhatIsUnsavedIsAskedAboutOnlyIfTheFileCanBeRead) {
+TEST_F(Loading, AsksAboutUnsavedEditsOnlyIfTheFileIsReadable) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
   setRow("stiffness", 700);
   ASSERT_TRUE(waitUntil([&] { return edits().unsaved() && edits().status().done == 1; }));
@@ -88,7 +88,7 @@ TEST_F(Loading, WhatIsUnsavedIsAskedAboutOnlyIfTheFileCanBeRead) {
     problem()->accept();
     EXPECT_EQ(edits().scene(), before) << bad;
   }
-  // Of one that can be read it is asked, and what is kept is kept.
+  // A readable file brings up a question first, and Cancel keeps the scene.
   const auto good = QString::fromStdString(saved(icosphere(30, 12), "other.obj").string());
   for (const auto button : {QMessageBox::Cancel, QMessageBox::Discard}) {
     bool answered = false;
@@ -110,7 +110,7 @@ TEST_F(Loading, WhatIsUnsavedIsAskedAboutOnlyIfTheFileCanBeRead) {
   EXPECT_TRUE(waitUntil([&] { return edits().scene()->scene.objects[0].name == "other"; }));
 }
 
-TEST_F(Loading, ASceneWithoutObjectsAsksForAMesh) {
+TEST_F(Loading, AsksForAMeshIfTheSceneHasNoObject) {
   Scene empty;
   saveWorkspace(empty, folder_ / "empty");
   QString message;
@@ -124,7 +124,7 @@ TEST_F(Loading, ASceneWithoutObjectsAsksForAMesh) {
       << message.toStdString() << '\n'
       << box->informativeText().toStdString();
   box->accept();
-  // What is advised can be done.
+  // The advised action is enabled.
   for (const QAction* action : window_->findChildren<QAction*>())
     if (action->shortcut() == QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_O)) {
       EXPECT_TRUE(action->isEnabled());
@@ -133,7 +133,7 @@ TEST_F(Loading, ASceneWithoutObjectsAsksForAMesh) {
   FAIL() << "no action adds an object";
 }
 
-TEST_F(Loading, CancelLeavesTheSceneAsItWas) {
+TEST_F(Loading, KeepsTheSceneOnCancel) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
   const auto before = edits().scene();
   const auto path = saved(torus(0.035, 0.015, 500, 250), "torus.obj");
@@ -150,9 +150,9 @@ TEST_F(Loading, CancelLeavesTheSceneAsItWas) {
   EXPECT_GT(surfaceShare(), 0.1);
 }
 
-TEST_F(Loading, AnOddSizeAsksForTheUnitAndTheAnswerCounts) {
+TEST_F(Loading, AsksForTheUnitIfTheSizeIsImplausible) {
   LoadRequest request;
-  request.path = saved(icosphere(0.03, 12), "small.obj"); // 0.06 mm, if it were millimetres
+  request.path = saved(icosphere(0.03, 12), "small.obj"); // 0.06 mm if read as millimetres
   documents().open(request);
   QDialog* dialog = nullptr;
   ASSERT_TRUE(waitUntil([&] {
@@ -162,12 +162,12 @@ TEST_F(Loading, AnOddSizeAsksForTheUnitAndTheAnswerCounts) {
   EXPECT_EQ(edits().scene(), nullptr);
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
-  dialog->accept(); // metres, which would make it 60 mm
+  dialog->accept(); // metres: the size is then 60 mm
   ASSERT_TRUE(waitUntil([&] { return ready; }));
   EXPECT_NEAR(bounds(*edits().scene()->mesh).sizes().maxCoeff(), 0.06, 1e-4);
 }
 
-TEST_F(Loading, AVolumeFromElsewhereAsksWhereItsSurfaceIs) {
+TEST_F(Loading, AsksForTheIsoValueOfAForeignVolume) {
   const vtkNew<vtkImageData> image;
   image->SetDimensions(40, 40, 40);
   image->SetOrigin(-20, -20, -20);
@@ -194,12 +194,12 @@ TEST_F(Loading, AVolumeFromElsewhereAsksWhereItsSurfaceIs) {
   }));
   bool ready = false;
   QObject::connect(window_.get(), &MainWindow::sceneReady, [&] { ready = true; });
-  dialog->accept(); // a distance: 0 is offered
+  dialog->accept(); // a distance: the dialog offers 0
   ASSERT_TRUE(waitUntil([&] { return ready; }));
   EXPECT_NEAR(bounds(*edits().scene()->mesh).sizes().maxCoeff(), 0.030, 1e-4);
 }
 
-TEST_F(Loading, AWorkspaceThatWasSavedOpensAgainWithItsValues) {
+TEST_F(Loading, ReopensASavedWorkspaceWithItsValues) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
   setRow("stiffness", 321);
   addProperty("Damping");
@@ -212,14 +212,14 @@ TEST_F(Loading, AWorkspaceThatWasSavedOpensAgainWithItsValues) {
   EXPECT_NE(find<QWidget>("damping"), nullptr);
 }
 
-TEST_F(Loading, OpenedFilesAreRemembered) {
+TEST_F(Loading, RemembersOpenedFiles) {
   const auto path = saved(icosphere(0.03, 8), "remember.obj");
   ASSERT_TRUE(open(path));
   EXPECT_TRUE(find<RecentFiles>()->paths().contains(QString::fromStdString(path.string())));
 }
 
-TEST_F(Loading, NeitherCancelNorANewLoadWaitsForAReader) {
-  // A pipe that nobody writes into: its reader cannot notice that it was cancelled.
+TEST_F(Loading, CancelAndANewLoadDoNotWaitForAReader) {
+  // A pipe without a writer: its reader cannot notice that it was cancelled.
   const auto pipe = folder_ / "endless.obj";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   bool cancelled = false;
@@ -229,19 +229,18 @@ TEST_F(Loading, NeitherCancelNorANewLoadWaitsForAReader) {
   find<SceneLoader>()->cancel();
   ASSERT_TRUE(waitUntil([&] { return cancelled; }, 5000));
   ASSERT_TRUE(open(saved(icosphere(0.03, 8), "sphere.obj")));
-  EXPECT_FALSE(find<SceneLoader>()->resting());
+  EXPECT_FALSE(find<SceneLoader>()->isIdle());
   documents().open(requestFor(saved(torus(0.035, 0.015, 400, 200), "torus.obj")));
-  // Closing asks nothing and says what it waits for; the window goes when the reader has ended.
-  EXPECT_FALSE(window_->close());
-  wait(200);
-  EXPECT_TRUE(find<LoadBar>()->isVisible());
+  // Closing opens no question and does not wait for the reader.
+  EXPECT_TRUE(window_->close());
+  EXPECT_FALSE(window_->isVisible());
+  EXPECT_TRUE(window_->isReading());
   EXPECT_FALSE(feel().servo().running());
   { std::ofstream end(pipe); }
-  EXPECT_TRUE(waitUntil([&] { return !window_->isVisible(); }, 10000));
-  EXPECT_TRUE(find<SceneLoader>()->resting());
+  EXPECT_TRUE(waitUntil([&] { return !window_->isReading(); }, 10000));
 }
 
-TEST_F(Loading, ANewLoadTakesThePlaceOfOneUnderWay) {
+TEST_F(Loading, NewLoadReplacesARunningOne) {
   const auto slow = saved(torus(0.035, 0.015, 400, 200), "torus.obj");
   const auto quick = saved(icosphere(0.03, 8), "sphere.obj");
   documents().open(requestFor(slow));

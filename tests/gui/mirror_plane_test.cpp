@@ -1,4 +1,4 @@
-// The plane of a mirrored brush: where it lies, and when it is seen.
+// The plane of a mirrored brush: its position, and when it is visible.
 #include "app/gui/painting/mirror_plane.h"
 
 #include <QComboBox>
@@ -9,7 +9,7 @@
 namespace patina {
 namespace {
 
-TEST(MirrorPlane, LiesInTheMiddleOfTheObjectsBoxAcrossTheObjectsAxis) {
+TEST(MirrorPlane, LiesAtTheBoxCentreAcrossTheObjectsAxis) {
   SceneObject object{.name = "box", .mesh = {}};
   auto mesh = std::make_shared<TriangleMesh>(icosphere(0.03, 4));
   for (Vec3& point : mesh->positions) point += Vec3(0.1, 0.2, 0.3);
@@ -31,7 +31,7 @@ TEST(MirrorPlane, LiesInTheMiddleOfTheObjectsBoxAcrossTheObjectsAxis) {
   }
 }
 
-TEST_F(DrivenWindow, TheMirrorsPlaneIsSeenWhileItIsPaintedWithOne) {
+TEST_F(DrivenWindow, ShowsTheMirrorPlaneWhilePaintingWithIt) {
   if (IsSkipped()) return;
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "ball.obj")));
   trigger("tool_color");

@@ -15,8 +15,8 @@
 #include <QStyleOptionComboBox>
 #include <QToolBar>
 
-#include "app/gui/panels/strip_plot.h"
-#include "app/gui/widgets/elided_label.h"
+#include "app/gui/toolkit/elided_label.h"
+#include "app/gui/toolkit/strip_plot.h"
 
 namespace patina::test {
 namespace {
@@ -34,7 +34,7 @@ int widthOf(const QWidget& widget, const QString& text) {
   return widget.fontMetrics().horizontalAdvance(text);
 }
 
-// Widgets that draw more than the text that they hold, and what room is left for that.
+// Widgets that draw more than their text, and the room for the rest.
 bool cutsText(const QWidget& widget) {
   if (const auto* number = qobject_cast<const QAbstractSpinBox*>(&widget)) {
     const auto* line = number->findChild<const QLineEdit*>();
@@ -49,11 +49,11 @@ bool cutsText(const QWidget& widget) {
   }
   const auto* label = qobject_cast<const QLabel*>(&widget);
   if (label != nullptr && label->wordWrap()) {
-    // A word that is wider than the label is cut, too.
+    // A word wider than the label is cut, too.
     return label->heightForWidth(label->width()) > label->height() ||
            label->minimumSizeHint().width() > label->width();
   }
-  if (dynamic_cast<const ElidedLabel*>(&widget) != nullptr) return false; // its tooltip has it all
+  if (dynamic_cast<const ElidedLabel*>(&widget) != nullptr) return false; // its tooltip has it
   if (label != nullptr || qobject_cast<const QAbstractButton*>(&widget) != nullptr ||
       qobject_cast<const StripPlot*>(&widget) != nullptr) {
     const bool fixed = widget.minimumSize() == widget.maximumSize(); // a swatch, a cross
@@ -73,7 +73,8 @@ void checkItems(const QListWidget& list, QStringList& found) {
   }
 }
 
-bool holdsItsOwn(const QWidget& widget) { // what stands in it is its own business
+// Containers that check their own content.
+bool holdsItsOwn(const QWidget& widget) {
   return qobject_cast<const QAbstractSpinBox*>(&widget) != nullptr ||
          qobject_cast<const QComboBox*>(&widget) != nullptr ||
          qobject_cast<const QAbstractItemView*>(&widget) != nullptr ||

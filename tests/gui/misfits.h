@@ -1,5 +1,5 @@
-// What does not fit in a window: its widgets are walked, and each that is cut, covered or mute is
-// named.
+// Finds misfits in a window: walks its widgets and names each that is cut, covered or has no
+// tooltip.
 #pragma once
 
 #include <QStringList>
@@ -7,9 +7,9 @@
 
 namespace patina::test {
 
-// Text that is cut, widgets over one another or beyond what holds them.
+// Returns cut texts, and widgets that overlap or leave their parent.
 QStringList misfits(const QWidget& window);
-// Controls that have no tooltip, nor stand in something small that has one.
+// Returns controls without a tooltip, unless a small parent has one.
 QStringList muteControls(const QWidget& window);
 
 } // namespace patina::test

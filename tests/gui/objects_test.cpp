@@ -1,4 +1,4 @@
-// Several objects in the window: added, moved and removed while the tip feels on.
+// Several objects in the window are added, moved and removed while the servo runs.
 #include <QCheckBox>
 #include <QDoubleSpinBox>
 #include <QListWidget>
@@ -38,7 +38,7 @@ class Objects : public WindowTest {
   const std::vector<SceneObject>& objects() { return edits().scene()->scene.objects; }
 };
 
-TEST_F(Objects, AreAddedWithNamesOfTheirOwn) {
+TEST_F(Objects, GetUniqueNamesWhenAdded) {
   ASSERT_TRUE(add("cup.obj"));
   ASSERT_TRUE(add("ball.obj"));
   ASSERT_EQ(objects().size(), 3U);
@@ -48,7 +48,7 @@ TEST_F(Objects, AreAddedWithNamesOfTheirOwn) {
   EXPECT_TRUE(feel().servo().running());
 }
 
-TEST_F(Objects, MoveAndAreFeltWhereTheyHaveGone) {
+TEST_F(Objects, AreTouchedAtTheirNewPose) {
   ASSERT_TRUE(add("cup.obj"));
   list()->setCurrentRow(1);
   ASSERT_TRUE(rebuiltAfter([&] { find<QDoubleSpinBox>("place_x")->setValue(60); }));
@@ -62,7 +62,7 @@ TEST_F(Objects, MoveAndAreFeltWhereTheyHaveGone) {
   EXPECT_GT(feel().sample().force[2], 0.5);
 }
 
-TEST_F(Objects, EditsThatComeWhileOneIsUnderWayAreNotLost) {
+TEST_F(Objects, KeepEditsThatComeDuringAnother) {
   ASSERT_TRUE(add("cup.obj"));
   list()->setCurrentRow(1);
   find<QDoubleSpinBox>("place_x")->setValue(50);
@@ -75,7 +75,7 @@ TEST_F(Objects, EditsThatComeWhileOneIsUnderWayAreNotLost) {
   }));
 }
 
-TEST_F(Objects, AreRemovedButForTheLast) {
+TEST_F(Objects, AreRemovedExceptForTheLast) {
   auto* remove = find<QToolButton>("remove_object");
   EXPECT_FALSE(remove->isEnabled());
   ASSERT_TRUE(add("cup.obj"));
@@ -87,7 +87,7 @@ TEST_F(Objects, AreRemovedButForTheLast) {
   EXPECT_FALSE(remove->isEnabled());
 }
 
-TEST_F(Objects, DepthToTheUnionIsOfferedWhereThereAreSeveral) { // F9
+TEST_F(Objects, OfferDepthToTheUnionIfThereAreSeveral) { // F9
   auto* union_depth = find<QCheckBox>("redistance");
   EXPECT_FALSE(union_depth->isVisibleTo(find<ObjectList>()));
   ASSERT_TRUE(add("cup.obj"));
@@ -96,7 +96,7 @@ TEST_F(Objects, DepthToTheUnionIsOfferedWhereThereAreSeveral) { // F9
   EXPECT_TRUE(edits().scene()->scene.redistance);
 }
 
-TEST_F(Objects, AFileThatCannotBeAddedLeavesTheSceneAsItWas) {
+TEST_F(Objects, KeepTheSceneIfAFileCannotBeAdded) {
   bool failed = false;
   QObject::connect(&documents(), &DocumentController::failed, [&] { failed = true; });
   LoadRequest request = requestFor(folder_ / "none.obj");

@@ -1,4 +1,4 @@
-// Painting in the window: one gesture feels and paints, and every step can be taken back.
+// Painting in the window: one gesture touches and paints, and every step can be undone.
 #include <cmath>
 #include <utility>
 
@@ -11,9 +11,9 @@
 #include <QTabletEvent>
 #include <QToolButton>
 
-#include "core/run_queue_wait.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
+#include "haptics/servo/run_delay.h"
 #include "support/least_time.h"
 
 namespace patina {
@@ -35,14 +35,15 @@ class Painting : public WindowTest {
     wait(100);
   }
   double row(const QString& name) { return find<ValueRow>(name)->value(); }
-  int layersBeside() { // the brush's own
+  // Returns the number of layers of the brush besides its own.
+  int layersBeside() {
     int count = 0;
     const QRegularExpression name("^also_");
     for (const QAction* action : find<BrushPanel>()->findChildren<QAction*>(name))
       count += action->isChecked();
     return count;
   }
-  // As a hand does it: down, along, up, with the time that it takes.
+  // Moves like a hand: down, along, up, at its speed.
   void stroke(const QPoint& from, const QPoint& to, int milliseconds = 400) {
     send(QEvent::MouseMove, from, Qt::NoButton, Qt::NoButton);
     wait(150);
@@ -70,7 +71,7 @@ class Painting : public WindowTest {
   }
 };
 
-TEST_F(Painting, NothingToPaintWithIsThereBeforeItIsNeeded) {
+TEST_F(Painting, ShowsNoBrushBeforeItIsNeeded) {
   EXPECT_FALSE(find<BrushPanel>()->isVisible());
   EXPECT_FALSE(find<ReliefPanel>()->isVisible());
   EXPECT_FALSE(find<HistoryPanel>()->isVisible());
@@ -86,19 +87,19 @@ TEST_F(Painting, NothingToPaintWithIsThereBeforeItIsNeeded) {
   EXPECT_FALSE(find<HistoryPanel>()->isVisible());
 }
 
-TEST_F(Painting, AStrokeIsSeenIsOneEditAndIsUndoneAndDoneAgain) {
+TEST_F(Painting, StrokeIsVisibleAndOneEditThatUndoesAndRedoes) {
   choose("color");
-  show(Layer::tip, false); // the tool is warm too
+  show(Layer::tip, false); // the tool has warm colours too
   const double before = redShare();
   stroke(middle() - QPoint(60, 0), middle() + QPoint(60, 0));
   ASSERT_TRUE(strokeDone(1));
   wait(150);
   ASSERT_NE(paint(), nullptr);
   EXPECT_TRUE(paint()->color);
-  EXPECT_FALSE(paint()->material) << "what was not painted is not there";
+  EXPECT_FALSE(paint()->material) << "unpainted layers are absent";
   EXPECT_TRUE(find<HistoryPanel>()->isVisible());
   EXPECT_TRUE(window_->isWindowModified());
-  send(QEvent::MouseMove, QPoint(5, 5), Qt::NoButton, Qt::NoButton); // the cursor is red as well
+  send(QEvent::MouseMove, QPoint(5, 5), Qt::NoButton, Qt::NoButton); // the cursor is red too
   wait(100);
   EXPECT_GT(redShare(), before + 0.005);
   key(Qt::Key_Z, Qt::ControlModifier);
@@ -111,17 +112,17 @@ TEST_F(Painting, AStrokeIsSeenIsOneEditAndIsUndoneAndDoneAgain) {
   EXPECT_GT(redShare(), before + 0.005);
 }
 
-TEST_F(Painting, PaintingAndFeelingAreOneGesture) {
+TEST_F(Painting, OneGesturePaintsAndTouches) {
   choose("stiffness");
   const double base = edits().scene()->scene.haptics.stiffness;
   setRow("brush_value", 4 * base);
   setRow("brush_radius", 6);
   setRow("brush_falloff", 16);
-  feel().startLog();
+  startLog();
   stroke(middle() - QPoint(40, 0), middle() + QPoint(40, 0), 600);
   ASSERT_TRUE(strokeDone(1));
-  const auto felt = feel().log().samples();
-  // Force on the hand while it painted, and harder than the bare surface at the same depth.
+  const auto felt = logged();
+  // There is a force while painting, larger than on the bare surface at the same depth.
   double most = 0, stiffest = 0;
   for (const ToolSample& tick : felt) {
     if (!tick.contact || tick.depth < 2e-4) continue;
@@ -134,7 +135,7 @@ TEST_F(Painting, PaintingAndFeelingAreOneGesture) {
   EXPECT_TRUE(paint()->material->has(MaterialChannel::stiffness));
 }
 
-TEST_F(Painting, AQuickClickPaintsToo) {
+TEST_F(Painting, QuickClickPaints) {
   choose("color");
   send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
   Vec3 tip = Vec3::Constant(NAN);
@@ -148,20 +149,20 @@ TEST_F(Painting, AQuickClickPaintsToo) {
   EXPECT_TRUE(strokeDone(1));
 }
 
-TEST_F(Painting, BesideTheObjectNothingIsPainted) {
+TEST_F(Painting, PaintsNothingBesideTheObject) {
   choose("color");
   stroke(QPoint(20, 20), QPoint(60, 30), 200);
   wait(400);
   EXPECT_TRUE(edits().status().edits.empty());
 }
 
-TEST_F(Painting, LayersThatAreTickedArePaintedByTheSameStroke) {
+TEST_F(Painting, OneStrokePaintsAllTickedLayers) {
   choose("stiffness");
   for (const char* name : {"also_color", "also_friction.static"}) {
     ASSERT_NE(find<QAction>(name), nullptr) << name;
     trigger(name);
   }
-  EXPECT_EQ(find<QAction>("also_stiffness"), nullptr); // that is what the tool paints anyway
+  EXPECT_EQ(find<QAction>("also_stiffness"), nullptr); // the tool paints this layer anyway
   EXPECT_EQ(layersBeside(), 2);
   stroke(middle(), middle() + QPoint(40, 0));
   ASSERT_TRUE(strokeDone(1));
@@ -170,14 +171,14 @@ TEST_F(Painting, LayersThatAreTickedArePaintedByTheSameStroke) {
   EXPECT_FALSE(paint()->relief);
   EXPECT_TRUE(paint()->material->has(MaterialChannel::stiffness));
   EXPECT_TRUE(paint()->material->has(MaterialChannel::static_friction));
-  // Another tool keeps the ticks, and its own layer is no second one.
+  // Another tool keeps the ticks, and its own layer is not counted twice.
   choose("color");
   EXPECT_EQ(layersBeside(), 1);
   choose("erase");
   EXPECT_EQ(layersBeside(), 0);
 }
 
-TEST_F(Painting, AClickInTheHistoryGoesThere) {
+TEST_F(Painting, ClickInTheHistoryGoesToThatEdit) {
   choose("color");
   stroke(middle() - QPoint(50, 30), middle() + QPoint(50, -30), 200);
   ASSERT_TRUE(strokeDone(1));
@@ -196,10 +197,10 @@ TEST_F(Painting, AClickInTheHistoryGoesThere) {
   EXPECT_TRUE(paint()->color && !paint()->material);
 }
 
-TEST_F(Painting, KeysChooseToolsAndTheBrushesSize) {
+TEST_F(Painting, KeysChooseToolsAndTheBrushSize) {
   for (const ToolCard& card : toolCards()) {
     key(card.key);
-    if (card.choice.handling == Handling::pick) continue;
+    if (card.choice.handling == InteractionMode::pick) continue;
     EXPECT_TRUE(find<ToolBar>()->choice() == card.choice) << card.words.toStdString();
   }
   key(Qt::Key_P);
@@ -211,12 +212,12 @@ TEST_F(Painting, KeysChooseToolsAndTheBrushesSize) {
   EXPECT_NEAR(row("brush_radius"), radius, 1e-9);
   EXPECT_NEAR(row("brush_falloff"), falloff / 1.15, 0.006);
   key(Qt::Key_Space);
-  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::navigate);
+  EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::navigate);
   key(Qt::Key_Space);
-  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{Handling::paint, Tool::color}));
+  EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{InteractionMode::paint, Tool::color}));
 }
 
-TEST_F(Painting, TheEyedropperTakesWhatIsThereAndGivesTheBrushBack) {
+TEST_F(Painting, EyedropperTakesTheColourAndReturnsToTheBrush) {
   choose("stiffness");
   setRow("brush_value", 2345);
   setRow("brush_radius", 8);
@@ -233,7 +234,7 @@ TEST_F(Painting, TheEyedropperTakesWhatIsThereAndGivesTheBrushBack) {
   send(QEvent::MouseButtonPress, middle() + QPoint(2, 0), Qt::LeftButton, Qt::LeftButton);
   EXPECT_NEAR(row("brush_value"), 2345, 25);
   EXPECT_TRUE(find<ToolBar>()->choice() ==
-              (ToolChoice{Handling::paint, Tool::material(MaterialChannel::stiffness)}));
+              (ToolChoice{InteractionMode::paint, Tool::material(MaterialChannel::stiffness)}));
   send(QEvent::MouseMove, middle(), Qt::NoButton, Qt::NoButton);
   ASSERT_TRUE(waitUntil(
       [&] { return find<QLabel>("picked")->text().contains(QStringLiteral("N/m")); }, 3000));
@@ -241,7 +242,7 @@ TEST_F(Painting, TheEyedropperTakesWhatIsThereAndGivesTheBrushBack) {
       << find<QLabel>("picked")->text().toStdString();
 }
 
-TEST_F(Painting, APensPressureIsForceAndMakesTheBrushLarger) { // K19
+TEST_F(Painting, PenPressureGivesForceAndWidensTheBrush) { // K19
   choose("stiffness");
   setRow("brush_radius", 1);
   setRow("brush_grows", 3);
@@ -277,7 +278,7 @@ TEST_F(Painting, APensPressureIsForceAndMakesTheBrushLarger) { // K19
   EXPECT_GT(hard, 3 * light);
 }
 
-TEST_F(Painting, WhatIsShownFollowsTheToolUntilSomethingElseIsChosen) {
+TEST_F(Painting, ShownLayerFollowsTheToolUntilAnotherIsChosen) {
   choose("color");
   stroke(middle() - QPoint(40, 20), middle() + QPoint(40, -20), 200);
   ASSERT_TRUE(strokeDone(1));
@@ -288,7 +289,7 @@ TEST_F(Painting, WhatIsShownFollowsTheToolUntilSomethingElseIsChosen) {
   auto* combo = find<QComboBox>("paint_shown");
   const auto pick = [combo](int index) {
     combo->setCurrentIndex(index);
-    emit combo->activated(index); // as if a person had
+    emit combo->activated(index); // a user's choice emits it too
   };
   EXPECT_EQ(combo->count(), 4) << "as the tool, nothing, colour, stiffness";
   EXPECT_EQ(find<PaintDisplay>()->shown(), quantityOf(MaterialChannel::stiffness));
@@ -297,9 +298,7 @@ TEST_F(Painting, WhatIsShownFollowsTheToolUntilSomethingElseIsChosen) {
   pick(3); // stiffness
   choose("relief");
   EXPECT_EQ(find<PaintDisplay>()->shown(), quantityOf(MaterialChannel::stiffness));
-  // The range can be held.
-  auto* lock = find<QCheckBox>("lock_range");
-  lock->setChecked(true);
+  // Typing an end of the range locks it.
   find<QDoubleSpinBox>("range_low")->setValue(100);
   find<QDoubleSpinBox>("range_high")->setValue(4000);
   wait(100);
@@ -310,7 +309,7 @@ TEST_F(Painting, WhatIsShownFollowsTheToolUntilSomethingElseIsChosen) {
   EXPECT_FALSE(find<PaintDisplay>()->shown().has_value());
 }
 
-TEST_F(Painting, ReliefSaysHowHighItMayBe) { // F7
+TEST_F(Painting, ReliefShowsItsMaxHeight) { // F7
   show(Layer::tip, false);
   choose("relief");
   stroke(middle() - QPoint(40, 0), middle() + QPoint(40, 0), 300);
@@ -326,19 +325,19 @@ TEST_F(Painting, ReliefSaysHowHighItMayBe) { // F7
   ASSERT_TRUE(strokeDone(2));
 }
 
-TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
+TEST_F(Painting, WindowStaysResponsiveDuringAnEdit) {
   choose("stiffness");
   QElapsedTimer clock;
-  const RunQueueWait queue; // what other programs take of the processor is not the window's
-  // Its work by its own processor time, its waiting by what the edit takes beside it.
-  double longest = 0, most_work = 0, frame = 0, before = 0, worked = 0; // [ms]
+  const RunDelay queue; // processor time of other programs does not count
+  // The window's work is measured in its own processor time, its waiting relative to the edit.
+  double longest = 0, max_work = 0, frame = 0, before = 0, worked = 0; // [ms]
   QTimer beat;
   QObject::connect(&beat, &QTimer::timeout, [&] {
     const double now = 1e-6 * static_cast<double>(clock.nsecsElapsed() - queue.total().value_or(0));
     const double work = 1000 * test::threadSeconds();
     if (before != 0) {
       longest = std::max(longest, now - before);
-      most_work = std::max(most_work, work - worked);
+      max_work = std::max(max_work, work - worked);
     }
     frame = std::max(frame, 1000 * frameSeconds());
     before = now;
@@ -358,19 +357,19 @@ TEST_F(Painting, TheWindowGoesOnWhileAnEditIsUnderWay) {
   clock.start();
   beat.start(5);
   ASSERT_TRUE(waitUntil([&] {
-    if (done) beat.stop(); // what is shown then is drawing, not waiting
+    if (done) beat.stop(); // afterwards the time is drawing, not waiting
     return done;
   }));
   const double took =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   std::printf("edit %.0f ms, longest gap of the window %.0f ms, most work in one %.0f ms, longest "
               "frame %.0f ms\n",
-              1000 * took, longest, most_work, frame);
+              1000 * took, longest, max_work, frame);
   EXPECT_GT(1000 * took, 5 * longest);
-  EXPECT_LT(most_work, 5 * std::max(frame, 40.0)); // frames of software OpenGL
+  EXPECT_LT(max_work, 5 * std::max(frame, 40.0)); // frames of software OpenGL
 }
 
-TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {
+TEST_F(Painting, ReopensASavedWorkspaceWithItsHistory) {
   choose("color");
   stroke(middle() - QPoint(40, 0), middle() + QPoint(40, 0), 200);
   ASSERT_TRUE(strokeDone(1));
@@ -381,7 +380,7 @@ TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {
   ASSERT_TRUE(strokeDone(2));
   EXPECT_TRUE(window_->isWindowModified());
   window_ = std::make_unique<MainWindow>();
-  documents().setAsks(false);
+  documents().setInteractive(false);
   window_->resize(1100, 760);
   window_->show();
   ASSERT_TRUE(open(folder_ / "ws"));
@@ -389,11 +388,11 @@ TEST_F(Painting, WhatWasSavedOpensAgainWithItsHistory) {
   EXPECT_EQ(edits().status().done, 2u);
   EXPECT_TRUE(edits().status().unsaved);
   EXPECT_TRUE(paint() && paint()->color);
-  bool said = false;
+  bool notified = false;
   for (const QLabel* label : window_->findChildren<QLabel*>())
-    said = said ||
-           (label->isVisible() && label->text().contains(QStringLiteral("after the last save")));
-  EXPECT_TRUE(said);
+    notified = notified || (label->isVisible() &&
+                            label->text().contains(QStringLiteral("after the last save")));
+  EXPECT_TRUE(notified);
 }
 
 } // namespace

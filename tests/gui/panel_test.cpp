@@ -1,9 +1,9 @@
-// Absent value, absent panel: the side panel shows what the scene has.
+// The side panel shows the scene's values; an absent value has no row.
 #include <QLabel>
 #include <QMenu>
 #include <QToolButton>
 
-#include "app/gui/panels/value_row.h"
+#include "app/gui/toolkit/value_row.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
@@ -22,7 +22,7 @@ class Panels : public WindowTest {
     addProperty(what);
     settle();
   }
-  // The servo's values have come where the panel wants them.
+  // Waits until the servo uses the panel's values.
   void settle() {
     waitUntil(
         [&] {
@@ -37,7 +37,7 @@ class Panels : public WindowTest {
   }
 };
 
-TEST_F(Panels, FrictionHasNoRowAndNoStageUntilItIsAdded) {
+TEST_F(Panels, FrictionHasNoRowAndNoStageUntilAdded) {
   EXPECT_EQ(row("friction_static"), nullptr);
   EXPECT_FALSE(find<QLabel>("stages")->text().contains(QStringLiteral("friction")));
   add(QStringLiteral("Friction"));
@@ -72,8 +72,8 @@ TEST_F(Panels, StaticFrictionNeverFallsBelowDynamic) {
   EXPECT_EQ(edits().scene()->scene.haptics.friction->dynamic_coefficient, 0.2);
 }
 
-TEST_F(Panels, TheSliceIsDrawnWhenItIsAskedFor) {
-  show(Layer::tip, false); // the tool is warm too
+TEST_F(Panels, DrawTheSliceOnRequest) {
+  show(Layer::tip, false); // the tool has warm colours too
   EXPECT_EQ(warmShare(), 0);
   show(Layer::slice, true);
   EXPECT_GT(warmShare(), 0.01);
@@ -81,9 +81,9 @@ TEST_F(Panels, TheSliceIsDrawnWhenItIsAskedFor) {
   EXPECT_EQ(warmShare(), 0);
 }
 
-TEST_F(Panels, AFrameMayComeBetweenTheWishForASliceAndTheSlice) {
+TEST_F(Panels, SurviveAFrameBetweenRequestAndSlice) {
   show(Layer::slice, true);
-  view().renderWindow()->Render(); // as for a resize
+  view().renderWindow()->Render(); // a resize renders too
   show(Layer::tip, false);
   EXPECT_GT(warmShare(), 0.01);
 }
@@ -97,7 +97,7 @@ TEST_F(Panels, WireframeDarkensTheSurface) {
   EXPECT_GT(dark(), before + 0.01);
 }
 
-TEST_F(Panels, TheStatusLineShowsTheServo) {
+TEST_F(Panels, StatusLineShowsTheServo) {
   wait(600);
   const QString rate = find<QLabel>("rate")->text();
   EXPECT_TRUE(rate.endsWith(QStringLiteral("Hz"))) << rate.toStdString();

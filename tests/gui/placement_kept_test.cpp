@@ -1,11 +1,10 @@
-// Where a path was laid onto the mesh is asked about before it is lost.
-#ifdef PATINA_HAS_ACQUISITION
+// The window warns before a path's pose on the mesh is lost.
 #include <cmath>
 
 #include <QLineEdit>
 #include <QMessageBox>
 
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "core/progress.h"
@@ -65,12 +64,12 @@ class PlacementKept : public DrivenWindow {
   QString words_;
 };
 
-TEST_F(PlacementKept, APlaceThatNobodyLaidIsNotAskedAbout) {
+TEST_F(PlacementKept, DoesNotAskAboutAnUnchangedPose) {
   EXPECT_TRUE(closes());
   EXPECT_TRUE(asked_.isEmpty());
 }
 
-TEST_F(PlacementKept, ClosingAsksAndNamesThePathAndCancelGoesOn) {
+TEST_F(PlacementKept, AsksAndNamesThePathOnCloseAndCancelContinues) {
   lay();
   answer(QMessageBox::Cancel);
   EXPECT_FALSE(closes());
@@ -81,7 +80,7 @@ TEST_F(PlacementKept, ClosingAsksAndNamesThePathAndCancelGoesOn) {
   EXPECT_TRUE(closes());
 }
 
-TEST_F(PlacementKept, WhatIsKeptInAFileIsNotAskedAbout) {
+TEST_F(PlacementKept, DoesNotAskAboutAPoseSavedInAFile) {
   lay();
   answerWithPath(folder_ / "kept.csv");
   clickOn("align_keep");
@@ -89,7 +88,7 @@ TEST_F(PlacementKept, WhatIsKeptInAFileIsNotAskedAbout) {
   EXPECT_TRUE(closes());
 }
 
-TEST_F(PlacementKept, AnotherSceneAsksTooForItEndsThePlacement) {
+TEST_F(PlacementKept, AsksBeforeAnotherSceneOpens) {
   lay();
   answer(QMessageBox::Cancel);
   const auto before = edits().scene();
@@ -99,7 +98,7 @@ TEST_F(PlacementKept, AnotherSceneAsksTooForItEndsThePlacement) {
   EXPECT_EQ(edits().scene(), before);
 }
 
-TEST_F(PlacementKept, AnotherPathAsksToo) {
+TEST_F(PlacementKept, AsksBeforeAnotherPathOpens) {
   lay();
   writePath(folder_ / "other.csv", desk().alignment().path());
   const auto openOther = [&] {
@@ -117,10 +116,10 @@ TEST_F(PlacementKept, AnotherPathAsksToo) {
   openOther();
   ASSERT_TRUE(waitUntil([&] { return desk().name() == QStringLiteral("other.csv"); }, 10000));
   EXPECT_EQ(asked_.size(), 1);
-  EXPECT_TRUE(desk().isKept());
+  EXPECT_TRUE(desk().isSaved());
 }
 
-TEST_F(PlacementKept, AScanThatIsFilteredAnewAsksToo) {
+TEST_F(PlacementKept, AsksBeforeTheScanIsFilteredAgain) {
   lay();
   answer(QMessageBox::Cancel);
   emit window_->findChild<ScanDesk*>()->pathMade(QStringLiteral("stroke"),
@@ -129,7 +128,7 @@ TEST_F(PlacementKept, AScanThatIsFilteredAnewAsksToo) {
   EXPECT_EQ(desk().name(), QStringLiteral("path.csv"));
 }
 
-TEST_F(PlacementKept, AnEditOfTheSceneLeavesThePathWhereItLies) {
+TEST_F(PlacementKept, KeepsThePoseIfTheSceneIsEdited) {
   lay();
   const Pose place = desk().alignment().pose();
   const auto target = desk().alignment().target();
@@ -143,9 +142,9 @@ TEST_F(PlacementKept, AnEditOfTheSceneLeavesThePathWhereItLies) {
   edits().addObjects({object}, [](const EditOutcome&) {});
   ASSERT_TRUE(waitUntil([&] { return desk().alignment().target() != target; }, 20000));
   EXPECT_EQ(desk().alignment().pose().matrix(), place.matrix());
-  EXPECT_FALSE(desk().isKept());
+  EXPECT_FALSE(desk().isSaved());
   EXPECT_EQ(desk().alignment().done(), 1U);
-  EXPECT_GT(std::abs(distance() - before), 1e-4) << "from the surface as it is now";
+  EXPECT_GT(std::abs(distance() - before), 1e-4) << "from the present surface";
   const QString words = find<QLabel>("align_error")->text();
   edits().thread().undo();
   ASSERT_TRUE(waitUntil([&] { return std::abs(distance() - before) < 1e-9; }, 20000));
@@ -154,17 +153,17 @@ TEST_F(PlacementKept, AnEditOfTheSceneLeavesThePathWhereItLies) {
   EXPECT_EQ(desk().alignment().pose().matrix(), place.matrix());
 }
 
-TEST_F(PlacementKept, WhatIsPutIntoTheWorkspaceIsKeptWhenItIsThere) {
+TEST_F(PlacementKept, CountsAsSavedOnceTheWorkspaceHasIt) {
   lay();
   find<QPushButton>("align_store")->click();
-  EXPECT_FALSE(desk().isKept()) << "the edit is not done yet";
-  answer(QMessageBox::Discard); // of the edits
+  EXPECT_FALSE(desk().isSaved()) << "the edit is not done yet";
+  answer(QMessageBox::Discard); // discards the edits
   EXPECT_TRUE(closes()) << "it is waited for";
   EXPECT_EQ(asked_, QStringList(QStringLiteral("unsaved_edits")));
-  EXPECT_TRUE(desk().isKept());
+  EXPECT_TRUE(desk().isSaved());
 }
 
-TEST_F(PlacementKept, WhatTheWorkspaceDoesNotTakeIsNotKept) {
+TEST_F(PlacementKept, CountsAsUnsavedIfTheWorkspaceRefusesIt) {
   lay();
   SceneScan other = alignedScan("path.csv", desk().alignment());
   std::vector<PathSample> path = desk().alignment().path();
@@ -181,12 +180,12 @@ TEST_F(PlacementKept, WhatTheWorkspaceDoesNotTakeIsNotKept) {
   });
   clickOn("align_store");
   ASSERT_TRUE(waitUntil([&] { return told; }, 10000));
-  EXPECT_FALSE(desk().isKept());
+  EXPECT_FALSE(desk().isSaved());
 }
 
 class PlacementOpened : public DrivenWindow {};
 
-TEST_F(PlacementOpened, IsSeenWhereItsWorkspaceHasIt) {
+TEST_F(PlacementOpened, IsShownAtTheWorkspacesPose) {
   const auto ball = std::make_shared<const TriangleMesh>(icosphere(0.03, 20));
   const Pose place(Eigen::Translation3d(0.001, -0.002, 0.0125));
   Alignment laid;
@@ -202,14 +201,13 @@ TEST_F(PlacementOpened, IsSeenWhereItsWorkspaceHasIt) {
   ASSERT_TRUE(open(folder_ / "kept.patina"));
   const auto& desk = *window_->findChild<AlignDesk*>();
   wait(300);
-  EXPECT_TRUE(desk.alignment().path().empty()) << "nobody has looked yet";
+  EXPECT_TRUE(desk.alignment().path().empty()) << "the desk is not open yet";
   clickAction("desk_align");
   ASSERT_TRUE(waitUntil([&] { return desk.alignment().isReady(); }, 10000));
   EXPECT_EQ(desk.name(), QStringLiteral("stroke"));
   EXPECT_TRUE(desk.alignment().pose().isApprox(place, 1e-12));
-  EXPECT_TRUE(desk.isKept());
+  EXPECT_TRUE(desk.isSaved());
 }
 
 } // namespace
 } // namespace patina
-#endif

@@ -1,19 +1,18 @@
-// Three places of a path and of its mesh are clicked, and the path goes where they say.
-#ifdef PATINA_HAS_ACQUISITION
+// Three pairs of points on a path and its mesh are clicked, and the path moves accordingly.
 #include <gtest/gtest.h>
 
-#include "app/gui/aligning/point_picking.h"
+#include "app/gui/aligning/align_central_views.h"
 #include "geometry/mesh/shapes.h"
 
 namespace patina {
 namespace {
 
-TEST(PointPicking, ThreePairsPutThePathWhereItBelongsAndNoPlaceCountsTwice) {
+TEST(PointPicking, PlacesThePathByThreePairsAndIgnoresDuplicates) {
   const TriangleMesh ball = icosphere(0.04, 12);
   const Pose belongs =
       Eigen::Translation3d(0.2, -0.1, 0.3) * Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized());
   std::vector<PathSample> path(3);
-  std::vector<Vec3> places; // middles of faces
+  std::vector<Vec3> places; // centres of faces
   for (const auto& face : {ball.triangles[0], ball.triangles[500], ball.triangles[1000]})
     places.push_back((ball.positions[face[0]] + ball.positions[face[1]] + ball.positions[face[2]]) /
                      3);
@@ -34,7 +33,7 @@ TEST(PointPicking, ThreePairsPutThePathWhereItBelongsAndNoPlaceCountsTwice) {
     EXPECT_EQ(picking.marks().size(), 2 * i);
     look(alignment.pose() * path[i].position);
     EXPECT_EQ(picking.marks().size(), 2 * i + 1);
-    if (i > 0) look(places[i - 1]); // of the pair before
+    if (i > 0) look(places[i - 1]); // looks at the previous pair
     EXPECT_EQ(picking.marks().size(), 2 * i + 1);
     look(places[i]);
     EXPECT_EQ(picking.marks().size(), 2 * i + 2);
@@ -47,4 +46,3 @@ TEST(PointPicking, ThreePairsPutThePathWhereItBelongsAndNoPlaceCountsTwice) {
 
 } // namespace
 } // namespace patina
-#endif

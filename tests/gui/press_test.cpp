@@ -1,15 +1,15 @@
-// The tool that presses: the force that is set is the one that is felt, however stiff the place is.
+// The press tool applies the set force at any stiffness of the surface.
 #include <algorithm>
 #include <climits>
 #include <cmath>
 #include <cstdio>
 
-#include "app/gui/control/touching.h"
+#include "app/gui/state/contact_offset.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 #include "scene/surface_pick.h"
 #include "session/edit/editor.h"
-#include "visualization/view/camera.h"
+#include "visualization/values/camera.h"
 
 namespace patina {
 namespace {
@@ -35,17 +35,17 @@ class Press : public DrivenWindow {
     stroke.samples.push_back({0, Vec3(0, 0, 0.5 * kThick), 0.5});
     return stroke;
   }
-  // Ribs along x on what gives way by `compliance`, on all of its top.
+  // Ribs along x on a base of this compliance, on all of its top.
   static Scene ribbed(Scene scene, double amplitude, double compliance) {
     FourierTexture ribs;
     ribs.name = "ribs";
     ribs.omega = 2 * M_PI / 4e-3;
     ribs.series.a = {amplitude};
     ribs.series.b = {0};
-    ribs.low = leastHeight(ribs);
+    ribs.low = minHeight(ribs);
     ribs.compliance = compliance;
-    LaidTextures laid;
-    laid.library[1] = feltTexture(ribs);
+    TextureMappings laid;
+    laid.library[1] = hapticTexture(ribs);
     const TriangleMesh& mesh = *scene.objects[0].mesh;
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
       TexturedFace face{static_cast<std::int32_t>(f), 1, {}};
@@ -53,12 +53,12 @@ class Press : public DrivenWindow {
       for (int k = 0; k < 3; ++k) {
         const Vec3 corner = mesh.corner(f, k);
         top = top && corner.z() > 0.49 * kThick;
-        face.at[static_cast<std::size_t>(k)] = corner.head<2>();
+        face.coords[static_cast<std::size_t>(k)] = corner.head<2>();
       }
       if (top) laid.faces.push_back(face);
     }
     ObjectPaint paint;
-    paint.textures = std::make_shared<const LaidTextures>(std::move(laid));
+    paint.textures = std::make_shared<const TextureMappings>(std::move(laid));
     scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
     return scene;
   }
@@ -72,7 +72,7 @@ class Press : public DrivenWindow {
     wait(1000);
     type(QStringLiteral("q"));
   }
-  // How far to the right of the middle a place of the drag is [m].
+  // Offset of a position of the drag to the right of the centre [m].
   double along(int x) {
     const double high = view().height();
     const QPoint pixel = middle() + QPoint(x, 0);
@@ -81,8 +81,7 @@ class Press : public DrivenWindow {
                    (pixel.x() - 0.5 * view().width()) / high, (0.5 * high - pixel.y()) / high);
     return firstSurfaceAlong(*edits().scene()->built.field, ray.origin, ray.direction).value().x();
   }
-  // What is felt on a drag through the middle, of those ticks that are in contact.
-  // It rests at `rests`.
+  // Returns the ticks in contact on a drag through the middle. The drag rests at `rests`.
   std::vector<ToolSample> strokeAt(double newtons, int half, int rests = INT_MAX) {
     auto* force = find<ValueRow>("press_force")->findChild<QDoubleSpinBox*>();
     force->setValue(newtons);
@@ -91,12 +90,12 @@ class Press : public DrivenWindow {
     press();
     EXPECT_TRUE(waitUntil([&] { return feel().sample().contact; }));
     wait(400);
-    feel().startLog();
+    startLog();
     for (int x = -half; x <= half; x += 3) {
       pointAt(inView({x, 0}));
       if (x == rests) wait(500);
     }
-    const std::vector<ToolSample> all = feel().log().samples();
+    const std::vector<ToolSample> all = logged();
     release();
     EXPECT_GT(all.size(), 500U);
     EXPECT_TRUE(std::all_of(all.begin(), all.end(), [](const auto& s) { return s.contact; }));
@@ -121,21 +120,21 @@ class Press : public DrivenWindow {
   }
 };
 
-TEST_F(Press, OnPaintedStiffnessTheForceIsTheOneThatWasSet) {
+TEST_F(Press, AppliesTheSetForceOnPaintedStiffness) {
   show(plate(), {stiff(1300, 0.2)});
   const Felt felt = of(strokeAt(0.8, 60));
   EXPECT_NEAR(felt.mean, 0.8, 0.04);
   EXPECT_LT(felt.most, 0.9);
 }
 
-TEST_F(Press, OnScannedStiffnessTheMeanIsTheForceThatWasSetAndRibsShow) {
+TEST_F(Press, AppliesTheSetMeanForceOnScannedStiffnessAndShowsRibs) {
   show(ribbed(plate(), 0.1e-3, 1.0 / 2500), {});
   const Felt felt = of(strokeAt(1, 60));
   EXPECT_NEAR(felt.mean, 1, 0.08);
   EXPECT_NEAR(felt.spread, 0.25 / std::sqrt(2), 0.05) << "2500 N/m times 0.1 mm";
 }
 
-TEST_F(Press, OverAnIslandOfOtherStiffnessTheForceStaysWithoutJumps) {
+TEST_F(Press, KeepsTheForceWithoutJumpsOverAStiffnessIsland) {
   show(plate(), {stiff(2500, 0.008)});
   const std::vector<ToolSample> all = strokeAt(1, 140);
   const Felt felt = of(all);
@@ -148,18 +147,18 @@ TEST_F(Press, OverAnIslandOfOtherStiffnessTheForceStaysWithoutJumps) {
   EXPECT_NEAR(of(middle).mean, 1, 0.1);
 }
 
-// However long it rests where the ground is hard, it sinks no faster where the ground is soft.
-TEST_F(Press, OffAnIslandAfterARestTheForceStaysWithoutJumps) {
+// A long rest on hard ground makes the tip sink no faster on soft ground.
+TEST_F(Press, KeepsTheForceWithoutJumpsOffAnIslandAfterARest) {
   show(plate(), {stiff(2500, 0.008)});
-  int rim = 0;                         // the last place on the island
-  for (int x = -140; x <= 140; x += 3) // as the drag goes
+  int rim = 0;                         // last position on the island
+  for (int x = -140; x <= 140; x += 3) // same steps as the drag
     if (along(x) < 0.0078) rim = x;
   ASSERT_GT(rim, 9);
   const Felt felt = of(strokeAt(1, 140, rim));
   EXPECT_LT(felt.most, 1.5);
 }
 
-TEST_F(Press, APenThatOnlyTouchesIsAtTheSurfaceAndPressesWhenItIsPressed) {
+TEST_F(Press, PenTouchStaysAtTheSurfaceAndPenPressureAddsForce) {
   show(plate(), {stiff(1300, 0.2)});
   const auto pen = [&](QEvent::Type type, double pressure) {
     QTabletEvent event(type, middle(), view().mapToGlobal(middle()), QTabletEvent::Stylus,
@@ -171,7 +170,7 @@ TEST_F(Press, APenThatOnlyTouchesIsAtTheSurfaceAndPressesWhenItIsPressed) {
   pen(QEvent::TabletPress, 0);
   ASSERT_TRUE(view().target().allFinite());
   const HapticProperties& haptics = edits().scene()->scene.haptics;
-  EXPECT_NEAR(view().target().z(), 0.5 * kThick + skinOf(haptics), 1e-5);
+  EXPECT_NEAR(view().target().z(), 0.5 * kThick + contactOffset(haptics), 1e-5);
   EXPECT_NEAR(feel().sample().force.norm(), 0, 0.02);
   pen(QEvent::TabletMove, 0.5);
   const double half = feel().sample().force.norm();
@@ -183,8 +182,8 @@ TEST_F(Press, APenThatOnlyTouchesIsAtTheSurfaceAndPressesWhenItIsPressed) {
   EXPECT_NEAR(feel().sample().force.norm(), 2 * half, 0.1 * half);
 }
 
-// On a steep rim the pull along the surface is a good part of the force; a coupling softens both.
-TEST_F(Press, BehindACouplingTheDepthIsThatOfTheForce) {
+// On a steep rim the force along the surface is large; a coupling softens both directions.
+TEST_F(Press, DepthMatchesTheForceBehindACoupling) {
   Scene scene = plate();
   scene.stabilisers = Stabilisers{true, false};
   Stroke rim = stiff(2500, 0.008);
@@ -193,22 +192,22 @@ TEST_F(Press, BehindACouplingTheDepthIsThatOfTheForce) {
   Editor editor(scene, progress);
   editor.apply(rim, progress);
   const CompiledScene& compiled = *editor.compiled();
-  const double skin = skinOf(scene.haptics);
-  double most_pull = 0;
+  const double skin = contactOffset(scene.haptics);
+  double max_pull = 0;
   for (double x = 0.001; x < 0.008; x += 0.0005) {
     const Vec3 surface(x, 0.0002, 0.5 * kThick);
     const double depth = pressDepth(compiled, surface, 1);
     ContactMemory memory;
     Contact contact;
-    for (int i = -20; i < 200; ++i) // down, and at rest
+    for (int i = -20; i < 200; ++i) // down, then at rest
       contact = tick(*compiled.snapshot, memory,
                      surface + (skin - depth * std::min(1.0, 0.05 * i)) * Vec3::UnitZ(), 1e-3);
     ASSERT_TRUE(contact.touching);
     EXPECT_LT(contact.stiffness, 0.9 * contact.material.stiffness) << "the coupling";
     EXPECT_NEAR(contact.force.norm(), 1, 0.02) << x;
-    most_pull = std::max(most_pull, contact.force.head<2>().norm());
+    max_pull = std::max(max_pull, contact.force.head<2>().norm());
   }
-  EXPECT_GT(most_pull, 0.3);
+  EXPECT_GT(max_pull, 0.3);
 }
 
 } // namespace

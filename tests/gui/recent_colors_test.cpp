@@ -1,4 +1,4 @@
-// Colours that were chosen before, by the pointer, and at the next start.
+// Recently chosen colours are offered, also at the next start.
 #include <QColorDialog>
 
 #include "geometry/mesh/shapes.h"
@@ -30,7 +30,7 @@ class RecentColors : public DrivenWindow {
   }
 };
 
-TEST_F(RecentColors, ThoseThatWereChosenAreOfferedNewestFirstAndAtTheNextStart) {
+TEST_F(RecentColors, AreOfferedNewestFirstAlsoAtTheNextStart) {
   if (IsSkipped()) return;
   paintColor();
   EXPECT_EQ(find<QToolButton>("recent_color_0"), nullptr);

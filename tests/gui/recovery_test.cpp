@@ -1,4 +1,5 @@
-// What a window had painted is offered by the next one, and a damaged workspace says what it has.
+// The next window offers the edits of a killed one, and opens the readable part of a damaged
+// workspace.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -37,7 +38,7 @@ class Recovery : public WindowTest {
   QWidget* bar() { return find<QWidget>("recover_bar"); }
 };
 
-// Runs in a program of its own, that kills itself in its second stroke.
+// This runs in a program of its own that kills itself in its second stroke.
 TEST_F(Recovery, DISABLED_PaintsAndIsKilled) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   paintOne();
@@ -52,7 +53,7 @@ TEST_F(Recovery, DISABLED_PaintsAndIsKilled) {
   for (;;) dragFromTo(middle() - QPoint(50, 20), middle() + QPoint(50, 20)), wait(20);
 }
 
-// The edits that are found after `milliseconds` of another stroke.
+// Returns the edits that are found after `milliseconds` of another stroke.
 std::size_t Recovery::editsAfterAKillIn(int milliseconds) {
   const pid_t child = fork();
   if (child == 0) {
@@ -64,7 +65,7 @@ std::size_t Recovery::editsAfterAKillIn(int milliseconds) {
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_TRUE(WIFSIGNALED(status)) << "it was to be killed";
-  documents().setAsks(false);
+  documents().setInteractive(false);
   window_->controllers().recovery.begin();
   if (!bar()->isVisible()) return 0;
   bool ready = false;
@@ -79,8 +80,8 @@ std::size_t Recovery::editsAfterAKillIn(int milliseconds) {
   return edits().status().edits.size();
 }
 
-// A shorter row than by hand: PATINA_KILLS=50.
-TEST_F(Recovery, AKillInAStrokeLosesNoFinishedOne) {
+// A shorter series than in the long form: PATINA_KILLS=50.
+TEST_F(Recovery, LosesNoFinishedStrokeIfKilledInOne) {
   const char* asked = std::getenv("PATINA_KILLS");
   const int kills = asked != nullptr ? std::atoi(asked) : 3;
   std::size_t least = 100;
@@ -92,7 +93,7 @@ TEST_F(Recovery, AKillInAStrokeLosesNoFinishedOne) {
   std::printf("%d kills, at least %zu strokes found\n", kills, least);
 }
 
-TEST_F(Recovery, AKilledWindowsStrokeIsOfferedByTheNextOne) {
+TEST_F(Recovery, OffersAKilledWindowsStrokeInTheNextOne) {
   const pid_t child = fork();
   if (child == 0) {
     execl("/proc/self/exe", "gui_tests", "--gtest_also_run_disabled_tests",
@@ -113,14 +114,14 @@ TEST_F(Recovery, AKilledWindowsStrokeIsOfferedByTheNextOne) {
   ASSERT_TRUE(waitUntil([&] { return ready && edits().status().edits.size() == 1; }));
   const auto& paint = edits().scene()->scene.objects[0].paint;
   EXPECT_TRUE(paint && paint->color);
-  EXPECT_TRUE(window_->isWindowModified()) << "it is in no folder of its own";
+  EXPECT_TRUE(window_->isWindowModified()) << "it has no folder";
   EXPECT_FALSE(edits().status().folder.has_value());
   saving().saveTo(QString::fromStdString((folder_ / "ws").string()));
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(fs::is_empty(folder_ / "state" / "patina"));
 }
 
-TEST_F(Recovery, ACleanEndLeavesNothingToOffer) {
+TEST_F(Recovery, OffersNothingAfterACleanEnd) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   paintOne();
   ASSERT_TRUE(editsDone(1));
@@ -129,7 +130,7 @@ TEST_F(Recovery, ACleanEndLeavesNothingToOffer) {
   EXPECT_TRUE(fs::is_empty(folder_ / "state" / "patina"));
 }
 
-TEST_F(Recovery, ClosingAsksAboutWhatIsNotSavedAndDiscardGoesBackToWhatWas) {
+TEST_F(Recovery, CloseAsksAboutUnsavedEditsAndDiscardRestoresTheSavedScene) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   const fs::path ws = folder_ / "ws";
   paintOne();
@@ -157,12 +158,12 @@ TEST_F(Recovery, ClosingAsksAboutWhatIsNotSavedAndDiscardGoesBackToWhatWas) {
   window_->show();
   ASSERT_TRUE(open(ws));
   EXPECT_EQ(edits().status().done, 1u);
-  EXPECT_EQ(edits().status().edits.size(), 1u) << "and nothing of the other is left to redo";
+  EXPECT_EQ(edits().status().edits.size(), 1u) << "no edit of the other is left to redo";
   EXPECT_FALSE(window_->isWindowModified());
   EXPECT_TRUE(window_->close()) << "nothing to ask about";
 }
 
-TEST_F(Recovery, ADamagedWorkspaceIsOfferedWhatCanBeRead) {
+TEST_F(Recovery, OffersTheReadablePartOfADamagedWorkspace) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 20), "sphere.obj")));
   const fs::path ws = folder_ / "ws";
   saving().saveTo(QString::fromStdString(ws.string()));
@@ -171,9 +172,9 @@ TEST_F(Recovery, ADamagedWorkspaceIsOfferedWhatCanBeRead) {
   paintOne();
   ASSERT_TRUE(editsDone(2));
   window_ = std::make_unique<MainWindow>();
-  documents().setAsks(false);
+  documents().setInteractive(false);
   window_->show();
-  for (const auto& entry : fs::directory_iterator(ws)) { // in the middle of the first record
+  for (const auto& entry : fs::directory_iterator(ws)) { // damages the first record
     if (entry.path().extension() != ".jsonl") continue;
     std::fstream file(entry.path(), std::ios::in | std::ios::out);
     std::string line;

@@ -1,4 +1,4 @@
-// What is marked as unsaved and asked about, where a folder is not the window's own.
+// Unsaved marks and questions if a folder does not belong to the window.
 #include "core/progress.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
@@ -20,8 +20,8 @@ class SaveState : public DrivenWindow {
   }
 };
 
-// A part of 1 mm is warned of, too: what is seen of both is what a person must know first.
-TEST_F(SaveState, OfEditsThatAKillHasLeft) {
+// A part of 1 mm causes a warning too. The notice must still name the restored edits.
+TEST_F(SaveState, MarksEditsOfAKilledProgramAsUnsaved) {
   Scene scene;
   scene.objects.push_back({"plate",
                            std::make_shared<const TriangleMesh>(box({0.06, 0.06, 0.001}, 8)),
@@ -36,11 +36,11 @@ TEST_F(SaveState, OfEditsThatAKillHasLeft) {
   ASSERT_TRUE(open(folder_ / "left.patina"));
   EXPECT_TRUE(marked(true));
   EXPECT_EQ(edits().scene()->scene.haptics.stiffness, 700);
-  EXPECT_TRUE(find<QLabel>("notice")->text().contains(QStringLiteral("here again")))
+  EXPECT_TRUE(find<QLabel>("notice")->text().contains(QStringLiteral("are restored")))
       << find<QLabel>("notice")->text().toStdString();
 }
 
-TEST_F(SaveState, OfAWorkspaceThatAnotherProgramHasOpen) {
+TEST_F(SaveState, MarksEditsInAWorkspaceOpenInAnotherProgramAsUnsaved) {
   Scene scene;
   scene.objects.push_back(
       {"ball", std::make_shared<const TriangleMesh>(icosphere(0.03, 12)), Pose::Identity(), {}});
@@ -54,7 +54,7 @@ TEST_F(SaveState, OfAWorkspaceThatAnotherProgramHasOpen) {
   wait(300);
   EXPECT_EQ(edits().status().edits.size(), 1U);
   EXPECT_FALSE(window_->isWindowModified()) << "nothing was edited";
-  EXPECT_TRUE(find<QLabel>("notice")->text().contains(QStringLiteral("not kept")));
+  EXPECT_TRUE(find<QLabel>("notice")->text().contains(QStringLiteral("not saved")));
   type('z', kControl);
   EXPECT_TRUE(editsAre(1, 0));
   EXPECT_TRUE(marked(true));
@@ -70,19 +70,19 @@ TEST_F(SaveState, OfAWorkspaceThatAnotherProgramHasOpen) {
   ASSERT_TRUE(waitUntil([&] { return isWorkspace(folder_ / "mine.patina"); }, 20000));
   EXPECT_TRUE(marked(false));
   EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("mine.patina")));
-  EXPECT_EQ(loadWorkspace(folder).haptics.stiffness, 700) << "what is another's stays";
+  EXPECT_EQ(loadWorkspace(folder).haptics.stiffness, 700) << "foreign files stay";
   EXPECT_EQ(loadWorkspace(folder_ / "mine.patina").haptics.stiffness, 250);
   setRow("stiffness", 300);
   EXPECT_TRUE(editsAre(3, 3));
   EXPECT_TRUE(marked(true));
   type('s', kControl);
-  EXPECT_TRUE(marked(false)) << "it is its own now";
+  EXPECT_TRUE(marked(false)) << "the window owns it now";
   EXPECT_EQ(loadWorkspace(folder_ / "mine.patina").haptics.stiffness, 300);
   EXPECT_TRUE(window_->close()) << "there is nothing to ask";
 }
 
-// The edit's thread rests before the window hears of it.
-TEST_F(SaveState, WhatIsDoneIsHeardOfBeforeClosingAsks) {
+// The edit's thread is idle before the window is notified.
+TEST_F(SaveState, HandlesFinishedEditsBeforeClosingAsks) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 8), "ball.ply")));
   wait(300);
   SceneObject object;
@@ -94,7 +94,7 @@ TEST_F(SaveState, WhatIsDoneIsHeardOfBeforeClosingAsks) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   ASSERT_FALSE(edits().thread().busy());
   ASSERT_FALSE(heard);
-  edits().settle();
+  edits().waitForEdits();
   EXPECT_TRUE(heard);
   EXPECT_TRUE(edits().unsaved());
 }

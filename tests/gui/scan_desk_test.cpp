@@ -1,5 +1,4 @@
-// The desk for scans, driven as a person drives it.
-#ifdef PATINA_HAS_ACQUISITION
+// The desk for scans, driven like by a user.
 #include "acquisition/tracking/lens.h"
 #include "gui/scan_fixture.h"
 
@@ -9,7 +8,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST_F(ScanDeskTest, OpensAScanFromTheFileMenuAndShowsItsPath) {
-  EXPECT_EQ(find<ScanView>("scan_view"), nullptr); // what is absent costs nothing
+  EXPECT_EQ(find<ScanView>("scan_view"), nullptr); // an absent scan costs nothing
   clickAction("desk_scan");
   whenAsked<QFileDialog>([this](QFileDialog&) {
     type(QString::fromStdString(scan_.string()));
@@ -23,7 +22,7 @@ TEST_F(ScanDeskTest, OpensAScanFromTheFileMenuAndShowsItsPath) {
   EXPECT_FALSE(view().isVisible());
   EXPECT_GT(scan().path()->path.size(), 300U);
   EXPECT_TRUE(window_->windowTitle().contains(QStringLiteral("a scan of a sphere")));
-  // The tube is in the picture: what of it is dark is no colour of anything else.
+  // The tube is in the picture: its dark pixels have a colour of their own.
   const QImage picture = find<ScanView>("scan_view")->grabFramebuffer();
   int tube = 0;
   for (int y = 0; y < picture.height(); ++y)
@@ -34,9 +33,9 @@ TEST_F(ScanDeskTest, OpensAScanFromTheFileMenuAndShowsItsPath) {
   EXPECT_GT(tube, 200);
 }
 
-TEST_F(ScanDeskTest, EveryFaultSaysWhyWhereverItIsClicked) {
+TEST_F(ScanDeskTest, EveryFaultShowsItsCauseWhereverItIsClicked) {
   ASSERT_TRUE(openScan());
-  // In the strip.
+  // Clicks in the strip.
   auto* strip = find<FrameStrip>("strip");
   scan().cursor().set(0.3);
   wait(100);
@@ -46,18 +45,18 @@ TEST_F(ScanDeskTest, EveryFaultSaysWhyWhereverItIsClicked) {
   EXPECT_TRUE(why().contains(QStringLiteral("000012.png"))) << why().toStdString();
   EXPECT_EQ(scan().qualityOf(kUnreadable), FrameQuality::unreadable);
   keepPicture("scan_unreadable");
-  // In the traces.
+  // Clicks in the traces.
   EXPECT_EQ(scan().qualityOf(kWrong), FrameQuality::rejected);
   const Finding* wrong = findingOf(Finding::Kind::outlier);
   ASSERT_NE(wrong, nullptr);
   auto* traces = find<ScanTraces>("traces");
   clickIn(*traces, traces->placeOf(wrong->from));
   EXPECT_EQ(scan().cursor().frame(), kWrong);
-  EXPECT_TRUE(why().contains(QStringLiteral("left out"))) << why().toStdString();
+  EXPECT_TRUE(why().contains(QStringLiteral("rejected"))) << why().toStdString();
   EXPECT_TRUE(why().contains(QStringLiteral("sigma"))) << why().toStdString();
   EXPECT_TRUE(why().contains(QStringLiteral("\u00A0mm and "))) << why().toStdString();
   keepPicture("scan_rejected");
-  // In the list.
+  // Clicks in the list.
   clickOn("page_findings");
   wait(100);
   const Finding* gap = findingOf(Finding::Kind::gap);
@@ -72,7 +71,7 @@ TEST_F(ScanDeskTest, EveryFaultSaysWhyWhereverItIsClicked) {
   EXPECT_TRUE(why().contains(QStringLiteral("no marker"))) << why().toStdString();
 }
 
-TEST_F(ScanDeskTest, KeysStepFramesAndOneCursorIsEverywhere) {
+TEST_F(ScanDeskTest, KeysStepFramesWithOneCursorInAllViews) {
   ASSERT_TRUE(openScan());
   auto* strip = find<FrameStrip>("strip");
   clickIn(*strip->viewport(), strip->placeOf(3).center());
@@ -106,14 +105,14 @@ double awayFromOutline(const QImage& drawn, const QPointF& place) {
   return nearest;
 }
 
-TEST_F(ScanDeskTest, OutlinesLieWhereTheRigIs) {
+TEST_F(ScanDeskTest, OutlinesLieOnTheRig) {
   ASSERT_TRUE(openScan());
   scan().cursor().set(scan().files()->frames[40].t);
   wait(300);
-  auto* canvas = find<FrameCanvas>("frame");
+  auto* canvas = find<PictureView>("frame");
   const QImage drawn = canvas->grab().toImage();
   keepPicture("scan_outlines");
-  // The truth: the tip's pose at that time, from the simulation and not from the tracker.
+  // The reference is the tip's true pose at that time, from the simulation.
   const std::vector<PathSample> truth = readPath(scan_ / "truth.csv");
   const double t = scan().files()->frames[40].t;
   const auto at =
@@ -130,10 +129,11 @@ TEST_F(ScanDeskTest, OutlinesLieWhereTheRigIs) {
   for (const RigMarker& marker : scan().files()->markers) {
     const Vec3 middle = pose * marker.probe_from_marker.translation();
     const Vec3 normal = (pose * marker.probe_from_marker).linear().col(2);
-    if (normal.dot(-middle.normalized()) < 0.35) continue; // too flat to be found, or from behind
+    if (normal.dot(-middle.normalized()) < 0.35) continue; // oblique or from behind
     for (const Vec3& corner : marker.corners()) {
       ++corners;
-      const QPointF place = canvas->placeOf(pixelOf(*scan().files()->camera, pose * corner));
+      const Vec2 pixel = pixelOf(*scan().files()->camera, pose * corner);
+      const QPointF place = canvas->placeOf({pixel.x(), pixel.y()});
       worst = std::max(worst, awayFromOutline(drawn, place));
     }
   }
@@ -142,7 +142,7 @@ TEST_F(ScanDeskTest, OutlinesLieWhereTheRigIs) {
   RecordProperty("worst_px", std::to_string(worst));
 }
 
-TEST_F(ScanDeskTest, PosesAndPathAreKeptAndThereAtOnceTheNextTime) {
+TEST_F(ScanDeskTest, KeepsPosesAndPathForTheNextTime) {
   ASSERT_TRUE(openScan());
   const std::size_t samples = scan().path()->path.size(), poses = scan().path()->poses.size();
   clickOn("keep_path");
@@ -155,10 +155,10 @@ TEST_F(ScanDeskTest, PosesAndPathAreKeptAndThereAtOnceTheNextTime) {
   documents().open(requestFor(scan_));
   ASSERT_TRUE(waitUntil([&] { return scan().path() != nullptr; }));
   EXPECT_EQ(scan().path()->path.size(), samples);
-  EXPECT_FALSE(scan().seen().back().looked); // the path is there before the frames are looked at
+  EXPECT_FALSE(scan().seen().back().looked); // the path is there before the frames are analysed
 }
 
-TEST_F(ScanDeskTest, AFolderThatCannotBeReadLeavesWhatIsOpen) {
+TEST_F(ScanDeskTest, KeepsTheOpenScanIfAFolderIsUnreadable) {
   ASSERT_TRUE(openScan());
   const fs::path broken = folder_ / "broken";
   fs::create_directories(broken);
@@ -176,4 +176,3 @@ TEST_F(ScanDeskTest, AFolderThatCannotBeReadLeavesWhatIsOpen) {
 
 } // namespace
 } // namespace patina
-#endif

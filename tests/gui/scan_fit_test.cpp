@@ -1,5 +1,4 @@
-// The desk for scans fits, with a scan that has all that can be said.
-#ifdef PATINA_HAS_ACQUISITION
+// The desk for scans fits with a scan that has every message.
 #include <sys/wait.h>
 
 #include "app/gui/control/desk_controller.h"
@@ -20,9 +19,9 @@ class ScanFit : public ScanDeskTest {
   void checkAll(const QString& size) {
     DeskController& desks = window_->controllers().desks;
     desks.choose(Desk::scan);
-    desks.foldColumn(false);
-    desks.foldDrawer(false);
-    scan().cursor().set(findingOf(Finding::Kind::outlier)->from); // the longest words
+    desks.foldSidePanel(false);
+    desks.foldBottomPanel(false);
+    scan().cursor().set(findingOf(Finding::Kind::outlier)->from); // the longest text
     for (const Panel page : {Panel::findings, Panel::messages, Panel::timeline}) {
       desks.open(page);
       wait(150);
@@ -30,14 +29,14 @@ class ScanFit : public ScanDeskTest {
     }
     wait(200);
     keepPicture("scan_" + size);
-    desks.foldColumn(true);
-    desks.foldDrawer(true);
+    desks.foldSidePanel(true);
+    desks.foldBottomPanel(true);
     wait(60);
     check(size.toStdString() + " folded");
   }
 };
 
-TEST_F(ScanFit, AtEverySize) {
+TEST_F(ScanFit, EveryPartAtEverySize) {
   ASSERT_TRUE(openScan());
   for (const QSize& size : {QSize(1024, 700), QSize(1280, 800), QSize(1440, 900)}) {
     takeSize(size.width(), size.height());
@@ -45,7 +44,7 @@ TEST_F(ScanFit, AtEverySize) {
   }
 }
 
-// In a program of its own, whose pixels are four.
+// This runs in a program of its own, with a scale of two.
 TEST_F(ScanFit, DISABLED_AtTwice) {
   ASSERT_EQ(window_->devicePixelRatioF(), 2);
   ASSERT_TRUE(openScan());
@@ -67,8 +66,8 @@ TEST(ScanFitAtTwice, TheDesk) {
   EXPECT_EQ(status, 0) << "what it printed is above";
 }
 
-// Looked at, in the dark theme, by who asks for pictures.
-TEST_F(ScanFit, InTheDark) {
+// Writes the pictures of the dark theme on request.
+TEST_F(ScanFit, EveryPartInTheDarkTheme) {
   window_.reset();
   applyStyle(application(), Theme::dark);
   window_ = std::make_unique<MainWindow>();
@@ -83,4 +82,3 @@ TEST_F(ScanFit, InTheDark) {
 
 } // namespace
 } // namespace patina
-#endif

@@ -1,4 +1,4 @@
-// A simulated scan with one of each fault, and a window that is driven as a person drives it.
+// A simulated scan with one of each fault, and a window that is driven like by a user.
 #pragma once
 
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 #include <QPushButton>
 
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
 #include "app/gui/scanning/frame_strip.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/scanning/scan_traces.h"
@@ -21,7 +21,7 @@ inline constexpr std::size_t kUnreadable = 12, kWrong = 25; // frames
 
 class ScanDeskTest : public DrivenWindow {
  protected:
-  // One a program, which those that it starts take too.
+  // One folder a program, shared with the programs that it starts.
   class Made {
    public:
     Made() {
@@ -34,7 +34,7 @@ class ScanDeskTest : public DrivenWindow {
       writeMesh(folder_ / "sphere.obj", icosphere(40, 12)); // mm
       const std::string command = "'" + (test::programFolder() / "patina").string() +
                                   "' simulate-scan '" + (folder_ / "sphere.obj").string() +
-                                  "' --frames --seconds 2 --dropouts 1 -o '" + scan_.string() +
+                                  "' --frames --seconds 3 --dropouts 1 -o '" + scan_.string() +
                                   "' > /dev/null 2>&1";
       EXPECT_EQ(std::system(command.c_str()), 0) << command;
       setenv(kPlace, scan_.c_str(), 1);

@@ -1,14 +1,13 @@
-// Scans and calibrations of the workspace, put in, taken out and undone as a person does it.
-#ifdef PATINA_HAS_ACQUISITION
+// Scans and calibrations of the workspace are added, removed and undone like by a user.
 #include <QComboBox>
 #include <random>
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/registered_file.h"
-#include "acquisition/simulation/frame_renderer.h"
+#include "acquisition/simulation/simulated_frames.h"
 #include "acquisition/tracking/lens.h"
 #include "app/gui/aligning/align_desk.h"
-#include "app/gui/aligning/aligned_scan.h"
+#include "app/gui/aligning/align_files.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "geometry/io/mesh_io.h"
@@ -33,7 +32,7 @@ class SceneScansTest : public ScanDeskTest {
     saveWorkspace(scene, folder_ / "workspace");
     ASSERT_TRUE(open(folder_ / "workspace"));
   }
-  // About its tip, 120 mm below, where its rig says 100.
+  // The frames show a tip 120 mm below, the rig says 100.
   fs::path turningScan() const {
     const Vec3 tip(0.002, 0.01, -0.12);
     std::vector<CameraPose> poses;
@@ -60,7 +59,7 @@ class SceneScansTest : public ScanDeskTest {
   }
 };
 
-TEST_F(SceneScansTest, EachStepIsUndoneAndTheScanOpensAgainFromTheWorkspace) {
+TEST_F(SceneScansTest, UndoesEachStepAndReopensTheScanFromTheWorkspace) {
   openWorkspace(icosphere(0.04, 12));
   clickAction("desk_scan");
   EXPECT_FALSE(find<QWidget>("scene_scans")->isVisible()); // absent: no list, no buttons
@@ -99,7 +98,7 @@ TEST_F(SceneScansTest, EachStepIsUndoneAndTheScanOpensAgainFromTheWorkspace) {
   EXPECT_EQ(scan().path()->path.size(), samples);
   EXPECT_NE(scan().files()->problem.find("is gone"), std::string::npos) << scan().files()->problem;
 
-  // Onto the mesh, from the workspace and back into it.
+  // The path is placed on the mesh, from the workspace and back into it.
   clickAction("desk_align");
   find<QComboBox>("align_scan")->setFocus();
   type(0xff54), wait(100); // down: its only scan
@@ -113,7 +112,7 @@ TEST_F(SceneScansTest, EachStepIsUndoneAndTheScanOpensAgainFromTheWorkspace) {
   EXPECT_NE(scene().scans.at(0).text("registered.txt")->find("mesh_from_scan"), std::string::npos);
 }
 
-TEST_F(SceneScansTest, ATextureOfAFittedScanYieldsAsTheFitFound) {
+TEST_F(SceneScansTest, TextureOfAFittedScanHasTheFittedCompliance) {
   openWorkspace(icosphere(0.04, 12));
   clickAction("desk_scan");
   ASSERT_TRUE(openScan());
@@ -139,8 +138,8 @@ TEST_F(SceneScansTest, ATextureOfAFittedScanYieldsAsTheFitFound) {
   EXPECT_EQ(find<QLabel>("texture_hint")->text(), QString());
 }
 
-// To the last bit what the command makes of the same folder and mesh.
-TEST_F(SceneScansTest, OneButtonLaysWhatPatinaScanLays) {
+// The window's result equals the command's for the same folder and mesh to the last bit.
+TEST_F(SceneScansTest, ButtonLaysTheSameTextureAsPatinaScan) {
   const TriangleMesh ball = icosphere(0.04, 12);
   fs::create_directories(folder_ / "again");
   fs::copy(scan_, folder_ / "again" / scan_.filename(), fs::copy_options::recursive);
@@ -170,12 +169,12 @@ TEST_F(SceneScansTest, OneButtonLaysWhatPatinaScanLays) {
   ASSERT_EQ(faces.size(), paint->textures->faces.size());
   for (std::size_t i = 0; i < faces.size(); ++i) {
     EXPECT_EQ(faces[i].face, paint->textures->faces[i].face);
-    EXPECT_EQ(faces[i].at, paint->textures->faces[i].at);
+    EXPECT_EQ(faces[i].coords, paint->textures->faces[i].coords);
   }
 }
 
-// The second is asked for before the first is done.
-TEST_F(SceneScansTest, AStoredPlaceOutlivesAScanThatIsPutInAtOnce) {
+// The second is requested before the first is done.
+TEST_F(SceneScansTest, StoredPoseSurvivesAScanAddedAtOnce) {
   const TriangleMesh ball = icosphere(0.04, 12);
   std::vector<PathSample> path(60);
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -198,12 +197,12 @@ TEST_F(SceneScansTest, AStoredPlaceOutlivesAScanThatIsPutInAtOnce) {
   ASSERT_EQ(scene().scans.size(), 1u);
   for (const char* file : {"rig.json", "path.csv", "registered.csv", "registered.txt"})
     EXPECT_NE(scene().scans[0].text(file), nullptr) << file;
-  // Another path under the name is none of its own.
+  // Another path under the same name has no registration.
   for (PathSample& sample : path) sample.position.z() += 0.01;
   align.setPath(QStringLiteral("stroke"), {path, {}});
   const SceneScan before = scene().scans[0];
   EXPECT_THROW((void)withAlignment(&before, alignedScan("stroke", align.alignment())), Error);
-  // What is refused leaves the path that lies there where it is.
+  // A refused alignment leaves the path unchanged.
   const Pose place = align.alignment().pose();
   path.resize(2);
   align.setPath(QStringLiteral("touch"), {path, Pose(Eigen::Translation3d(1, 2, 3))});
@@ -212,7 +211,7 @@ TEST_F(SceneScansTest, AStoredPlaceOutlivesAScanThatIsPutInAtOnce) {
 }
 
 // A chessboard of black squares on white, in eight attitudes.
-TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
+TEST_F(SceneScansTest, PicturesOfABoardCalibrateACameraThatIsKept) {
   const Camera known{640, 480, 610, 606, 325, 236, {-0.1, 0.04, 0, 0, 0}};
   std::vector<PrintedMarker> printed;
   for (int y = 0; y < 7; ++y)
@@ -246,19 +245,20 @@ TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
   clickOn("calibrate_camera");
   const auto* found = find<QLabel>("calibrate_found");
   ASSERT_TRUE(waitUntil([&] { return !found->text().isEmpty() && !desk().work(); }, 30000));
-  wait(400); // the column has scrolled to what was found
+  wait(400); // the column scrolls to the result
   EXPECT_TRUE(found->text().contains(QStringLiteral("in 8 of 8"))) << found->text().toStdString();
   EXPECT_TRUE(found->text().contains(QStringLiteral("fx 6"))) << found->text().toStdString();
   EXPECT_TRUE(found->text().contains(QStringLiteral("±")));
   keepPicture("calibrated");
-  // The corners lie where the board was.
-  auto* canvas = find<FrameCanvas>("frame");
+  // The corners lie on the board.
+  auto* canvas = find<PictureView>("frame");
   const QImage drawn = canvas->grab().toImage();
   int bright = 0;
   for (int y = 1; y < 7; ++y)
     for (int x = 1; x < 10; ++x) {
       const Vec3 corner = poses[0] * (0.025 * Vec3(x, -y, 0));
-      const QColor at = drawn.pixelColor(canvas->placeOf(pixelOf(known, corner)).toPoint());
+      const Vec2 pixel = pixelOf(known, corner);
+      const QColor at = drawn.pixelColor(canvas->placeOf({pixel.x(), pixel.y()}).toPoint());
       bright += at.green() > at.red() + 60 || at.red() > at.blue() + 60;
     }
   EXPECT_GT(bright, 48) << "of 54";
@@ -268,10 +268,10 @@ TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
   const Camera camera = readCamera(pictures / "camera.yml");
   EXPECT_NEAR(camera.fx, known.fx, 3);
   EXPECT_NEAR(camera.cy, known.cy, 3);
-  // A word that names no board is said to be none, and nothing is offered.
+  // A name without a board is reported, and nothing is offered.
   ASSERT_TRUE(waitUntil([&] { return !desk().work(); }, 10000));
   auto* board = find<QLineEdit>("calibrate_board");
-  wait(200); // the card has its place, now that there is a camera
+  wait(200); // the card's layout needs time once there is a camera
   click(*board);
   ASSERT_TRUE(waitUntil([&] { return board->hasFocus(); }, 5000));
   type('a', kControl);
@@ -285,7 +285,7 @@ TEST_F(SceneScansTest, PicturesOfABoardBecomeACameraThatIsKept) {
   EXPECT_FALSE(find<QPushButton>("calibrate_use")->isVisible());
 }
 
-TEST_F(SceneScansTest, ABoardInAReplayBecomesACameraThatIsKeptWhereAsked) {
+TEST_F(SceneScansTest, BoardInAReplayCalibratesACameraKeptInTheChosenFile) {
   const QString words = QStringLiteral("charuco:6x8:25mm:18.75mm:4x4_50");
   const Board board = parseBoard(words.toStdString());
   const Camera known{640, 480, 610, 606, 325, 236, {-0.1, 0.04, 0, 0, 0}};
@@ -310,12 +310,12 @@ TEST_F(SceneScansTest, ABoardInAReplayBecomesACameraThatIsKeptWhereAsked) {
   const auto* found = find<QLabel>("calibrate_found");
   ASSERT_TRUE(waitUntil([&] { return !found->text().isEmpty() && !desk().work(); }, 30000));
   EXPECT_TRUE(found->text().contains(QStringLiteral("in 6 of 6"))) << found->text().toStdString();
-  wait(400); // the column has scrolled to what was found
+  wait(400); // the column scrolls to the result
   answerWithPath(kept);
   clickOn("calibrate_use");
   ASSERT_TRUE(waitUntil([&] { return fs::exists(kept / "camera.yml"); }, 10000));
   EXPECT_NEAR(readCamera(kept / "camera.yml").fx, known.fx, 5);
-  // Another board is doubted, and nothing is offered.
+  // Another board causes a warning, and nothing is offered.
   ASSERT_TRUE(waitUntil([&] { return !desk().work(); }, 10000));
   find<QLineEdit>("calibrate_board")->setText(QStringLiteral("charuco:7x8:25mm:18.75mm:4x4_50"));
   clickOn("calibrate_camera");
@@ -325,7 +325,7 @@ TEST_F(SceneScansTest, ABoardInAReplayBecomesACameraThatIsKeptWhereAsked) {
   EXPECT_FALSE(find<QPushButton>("calibrate_use")->isVisible());
 }
 
-TEST_F(SceneScansTest, ATipFromPosesIsAnEditOfTheWorkspacesScan) {
+TEST_F(SceneScansTest, TipFromPosesIsAnEditOfTheWorkspacesScan) {
   const fs::path turning = turningScan();
   openWorkspace(icosphere(0.04, 12));
   documents().open(requestFor(turning));
@@ -347,10 +347,10 @@ TEST_F(SceneScansTest, ATipFromPosesIsAnEditOfTheWorkspacesScan) {
   EXPECT_EQ(status().edits.back(), "calibrate and filter scan turning");
   EXPECT_NEAR(parseRig(*scene().scans[0].text("rig.json"), "rig").probe.tip.z(), -0.12, 1e-6);
   EXPECT_NE(scene().scans[0].text("rig.json")->find("mine"), std::string::npos);
-  EXPECT_EQ(scene().scans[0].text("path.csv"), nullptr) << "of the tip before";
+  EXPECT_EQ(scene().scans[0].text("path.csv"), nullptr) << "of the previous tip";
   EXPECT_NE(scene().scans[0].text("poses.tum"), nullptr) << "of no tip";
   ASSERT_TRUE(waitUntil([&] { return scan().files()->of_scene && !desk().work(); }, 10000));
-  EXPECT_NEAR(scan().files()->tip().z(), -0.12, 1e-6); // and used
+  EXPECT_NEAR(scan().files()->tip().z(), -0.12, 1e-6); // the tip is used
   ASSERT_TRUE(waitUntil([&] { return scan().path() != nullptr; }, 10000));
   EXPECT_GT((scan().path()->path.front().position - was).norm(), 0.01); // the path, too
   EXPECT_NEAR(readRig(turning / "rig.json").probe.tip.z(), -0.1, 1e-12);
@@ -359,7 +359,7 @@ TEST_F(SceneScansTest, ATipFromPosesIsAnEditOfTheWorkspacesScan) {
   ASSERT_TRUE(waitUntil([&] { return scan().files()->tip().z() > -0.11; }, 10000));
 }
 
-TEST_F(SceneScansTest, ATipOfAFoldersScanSetsThePathOfTheOneBeforeAside) {
+TEST_F(SceneScansTest, TipOfAFolderScanReplacesTheEarlierPath) {
   const fs::path turning = turningScan();
   std::vector<PathSample> before(5);
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -385,4 +385,3 @@ TEST_F(SceneScansTest, ATipOfAFoldersScanSetsThePathOfTheOneBeforeAside) {
 
 } // namespace
 } // namespace patina
-#endif

@@ -5,13 +5,13 @@
 #include <future>
 #include <optional>
 
-#include "core/run_queue_wait.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
+#include "haptics/device/realtime.h"
 #include "haptics/servo/latency.h"
-#include "haptics/servo/realtime.h"
+#include "haptics/servo/run_delay.h"
 #include "support/simulated_device.h"
-#include "visualization/view/camera.h"
+#include "visualization/values/camera.h"
 
 namespace patina {
 namespace {
@@ -20,7 +20,8 @@ constexpr double kPeriod = 1000; // [us]
 constexpr double kSeconds = 9;
 constexpr double kDrawnRadius = 0.03;
 
-// Rests in the surface and notes, tick by tick, what its servo thread waited for a processor.
+// A device that rests in the surface and notes for each tick how long the servo thread waited for a
+// processor.
 class WatchedDevice final : public Device {
  public:
   struct Tick {
@@ -40,7 +41,7 @@ class WatchedDevice final : public Device {
     return state;
   }
 
-  // When the loop has stopped. Absent where the system keeps no account of the wait.
+  // Called once the loop has stopped. Absent if the system does not account for waiting.
   std::optional<std::vector<Tick>> ticks() const {
     if (!known_) return std::nullopt;
     return std::vector<Tick>(ticks_.begin(), ticks_.begin() + static_cast<std::ptrdiff_t>(count_));
@@ -48,7 +49,7 @@ class WatchedDevice final : public Device {
 
  private:
   std::unique_ptr<Device> rest_ = std::make_unique<StillDevice>(Vec3(0.99 * kDrawnRadius, 0, 0));
-  std::optional<RunQueueWait> wait_;
+  std::optional<RunDelay> wait_;
   std::int64_t before_ = 0;
   bool known_ = true;
   std::vector<Tick> ticks_ = std::vector<Tick>(100000);
@@ -62,12 +63,12 @@ std::string shown(const char* name, const Percentiles& us) {
   return text;
 }
 
-// Of the servo's wake-ups [us], one entry a tick.
+// Lateness of the servo's wake-ups [us], one entry a tick.
 struct Pass {
   bool realtime = false;
   std::vector<double> late;
-  // Absent, all of them, where the system keeps no account of the wait:
-  std::vector<double> taken; // waiting for a processor, and the tick before with its device
+  // All of them are absent if the system does not account for waiting:
+  std::vector<double> taken; // waiting for a processor, plus the previous tick with its device
   Latency bare;              // a loop with nothing to do, meanwhile
   std::string text;
 };
@@ -94,8 +95,8 @@ Pass passOf(const std::vector<ToolSample>& samples, const WatchedDevice& device,
   return pass;
 }
 
-// At most 3 times what the bare loop had to bear meanwhile, from the same timer, host and programs;
-// what is shorter than a twentieth (p99) or a half (p99.9) of the period is always allowed.
+// The limit is 3 times the idle loop's lateness with the same timer, host and programs; values
+// shorter than a twentieth (p99) or a half (p99.9) of the period are always allowed.
 double excess(const std::vector<double>& servo, const Percentiles& bare) {
   const Percentiles p = percentiles(servo);
   return std::max(p.p99 / std::max(0.05 * kPeriod, 3 * bare.p99),
@@ -110,7 +111,7 @@ double excess(const Pass& pass) {
 
 class ServoUnderDrawing : public WindowTest {
  protected:
-  // A second servo, watched, on what the window feels, while the window draws.
+  // A second, measured servo uses the window's snapshot while the window draws.
   Pass draw() {
     auto owned = std::make_unique<WatchedDevice>();
     const WatchedDevice& device = *owned;
@@ -138,16 +139,16 @@ class ServoUnderDrawing : public WindowTest {
     drain();
     std::printf("%d frames, mean %.0f ms, longest %.0f ms\n", frames, 1000 * sum / frames,
                 1000 * longest);
-    EXPECT_EQ(samples.size(), loop.timing().ticks) << "none may be lost: ticks are matched";
+    EXPECT_EQ(samples.size(), loop.timing().ticks) << "no sample may be lost: ticks are matched";
     EXPECT_GT(samples.size(), 8192U);
     EXPECT_TRUE(!samples.empty() && samples.back().contact);
     return passOf(samples, device, loop.timing(), measuring.get());
   }
 };
 
-// Against a loop of the same priority that does nothing: the timer, a virtual machine's host and
-// other programs are late for both. Without real-time priority every program is in the way, by
-// chance: then it is only looked at that no tick is lost.
+// The reference is an idle loop of the same priority: timer, virtual machine's host and other
+// programs delay both. Without real-time priority every program can delay the servo by chance: the
+// test then checks only that no tick is lost.
 TEST_F(ServoUnderDrawing, WakesInTimeWhileTheWindowDraws500000Triangles) {
   ASSERT_TRUE(open(saved(icosphere(kDrawnRadius, 158), "sphere.ply"))); // 499,280 triangles
   double least = 1e9;

@@ -1,5 +1,5 @@
-// A scene that asks for the simulated hand gets it, and the hand yields to the surface.
-#include "haptics/devices/simulated_hand.h"
+// A scene that requests the simulated hand gets it, and the surface deflects the hand.
+#include "haptics/simulation/simulated_hand.h"
 
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
@@ -10,7 +10,7 @@ namespace {
 
 using SimulatedHandWindow = WindowTest;
 
-TEST_F(SimulatedHandWindow, BalancesTheSurfaceInASceneThatAsksForIt) {
+TEST_F(SimulatedHandWindow, BalancesTheSurfaceIfTheSceneSelectsIt) {
   constexpr double kRadius = 0.03;
   Scene scene = sceneOf(icosphere(kRadius, 30), "sphere");
   scene.device = "simulated";

@@ -35,11 +35,11 @@ class StripPlotTest : public DrivenWindow {
   ForcePlot* plot_ = nullptr;
 };
 
-TEST_F(StripPlotTest, WhatIsHeldStandsStillWhileTicksAreRecorded) {
+TEST_F(StripPlotTest, HeldPlotStandsStillWhileTicksAreRecorded) {
   if (IsSkipped()) return;
   pointAt(inView({200, 150}));
   const QImage runs = picture();
-  // A curve without news stands still after a while: there is some until it has been seen to run.
+  // A curve without new data stops after a while: the tip moves until the test has seen it run.
   EXPECT_TRUE(waitUntil(
       [&] {
         touch();
@@ -60,7 +60,7 @@ TEST_F(StripPlotTest, WhatIsHeldStandsStillWhileTicksAreRecorded) {
   EXPECT_NE(picture(), held);
 }
 
-TEST_F(StripPlotTest, TheWheelHoldsAndZoomsADragShiftsAndADoubleClickFollowsAgain) {
+TEST_F(StripPlotTest, WheelHoldsAndZoomsDragShiftsDoubleClickFollows) {
   if (IsSkipped()) return;
   wheelAt(inPlot(0.5), 2);
   EXPECT_TRUE(holds().isChecked());
@@ -75,7 +75,7 @@ TEST_F(StripPlotTest, TheWheelHoldsAndZoomsADragShiftsAndADoubleClickFollowsAgai
   EXPECT_FALSE(holds().isChecked());
 }
 
-TEST_F(StripPlotTest, SpaceHoldsThePlotThatHasTheKeysAndIsTheCamerasElsewhere) {
+TEST_F(StripPlotTest, SpaceHoldsTheFocusedPlotAndElsewhereMovesTheCamera) {
   if (IsSkipped()) return;
   pointAt(inPlot(0.5)), press(), release();
   type(' ');

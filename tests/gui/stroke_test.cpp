@@ -1,15 +1,15 @@
-// A stroke is what the hand drew, however long a frame takes.
+// A stroke follows the hand's path, even if frames are slow.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <thread>
 
-#include "app/gui/control/touching.h"
+#include "app/gui/state/contact_offset.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 #include "scene/surface_pick.h"
 #include "session/store/journal_fold.h"
-#include "visualization/view/camera.h"
+#include "visualization/values/camera.h"
 #include "workspace/workspace.h"
 
 namespace patina {
@@ -19,7 +19,7 @@ class Strokes : public DrivenWindow {
  protected:
   static constexpr double kSeconds = 0.5;
 
-  // From the middle of the picture; 61 places.
+  // 61 places about the middle of the picture.
   static std::vector<QPoint> letterW() {
     const QPoint corners[] = {{-100, -60}, {-50, 60}, {0, -60}, {50, 60}, {100, -60}};
     std::vector<QPoint> places;
@@ -37,7 +37,7 @@ class Strokes : public DrivenWindow {
                    (pixel.x() - 0.5 * view().width()) / high, (0.5 * high - pixel.y()) / high);
     return firstSurfaceAlong(*edits().scene()->built.field, ray.origin, ray.direction).value();
   }
-  // At the hand's own pace, whatever the window does meanwhile.
+  // Draws at a hand's pace, also if the window is busy.
   void draw(const std::vector<QPoint>& places) {
     const QPoint origin = inView({});
     std::atomic<bool> done{false};
@@ -56,14 +56,14 @@ class Strokes : public DrivenWindow {
     waitUntil([&] { return done.load(); });
     hand.join();
   }
-  // What is in the history of the only stroke.
+  // Returns the only stroke of the history.
   Stroke strokeOfW(const TriangleMesh& mesh, const char* name) {
     EXPECT_TRUE(open(saved(mesh, name)));
     type(QStringLiteral("d")); // stiffness
     waitUntil([&] { return !edits().thread().busy(); });
     wait(300);
     pointAt(inView(letterW().front()));
-    wait(800); // the tool hovers there
+    wait(800); // the tool hovers above the surface
     draw(letterW());
     EXPECT_TRUE(waitUntil([&] { return edits().status().edits.size() == 1; }, 20000));
     std::printf("%s: a frame takes %.0f ms\n", name, 1000 * frameSeconds());
@@ -90,7 +90,7 @@ class Strokes : public DrivenWindow {
   }
 };
 
-TEST_F(Strokes, AWIsTheSameOnAMillionTrianglesAndGoesThroughEveryPixel) {
+TEST_F(Strokes, LetterWIsTheSameOnAMillionTrianglesAndPassesEveryPixel) {
   const Stroke quick = strokeOfW(icosphere(0.03, 22), "9680.ply");
   std::vector<Vec3> places;
   for (const QPoint& place : letterW()) places.push_back(under(place));
@@ -114,7 +114,7 @@ TEST_F(Strokes, AWIsTheSameOnAMillionTrianglesAndGoesThroughEveryPixel) {
   EXPECT_LT(slow_off, 0.02 * radius);
 }
 
-// From the first frame with paint on, none is without.
+// Every frame after the first one with paint shows paint.
 TEST_F(Strokes, NoFrameIsUnpaintedWhenAStrokeEnds) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 40), "sphere.ply")));
   find<QCheckBox>(QStringLiteral("tip"))->setChecked(false);
@@ -150,20 +150,20 @@ TEST_F(Strokes, NoFrameIsUnpaintedWhenAStrokeEnds) {
 }
 
 // 0.8 N are 8 mm deep at 100 N/m: a thin part would be left on its other side, unpainted.
-TEST_F(Strokes, APressGoesNoDeeperThanTheMiddleOfAThinPart) {
+TEST_F(Strokes, PressGoesNoDeeperThanTheMiddleOfAThinPart) {
   ASSERT_TRUE(open(saved(box({0.06, 0.06, 0.003}, 8), "plate.obj")));
   const Vec3 above(0.003, 0.004, 0.0015);
   const CompiledScene& plate = *edits().scene();
-  EXPECT_NEAR(depthWithin(plate, above, 8e-3), 1.5e-3, 0.02e-3);
-  // Beside an edge the part is as thick as elsewhere.
-  EXPECT_EQ(depthWithin(plate, {0.0295, 0, 0.0015}, 1.4e-3), 1.4e-3);
-  EXPECT_EQ(depthWithin(plate, above, 0.2e-3), 0.2e-3);
-  EXPECT_EQ(depthWithin(plate, above, -1e-3), -1e-3) << "above the skin of what is felt";
+  EXPECT_NEAR(clampedDepth(plate, above, 8e-3), 1.5e-3, 0.02e-3);
+  // Next to an edge the part has the same thickness.
+  EXPECT_EQ(clampedDepth(plate, {0.0295, 0, 0.0015}, 1.4e-3), 1.4e-3);
+  EXPECT_EQ(clampedDepth(plate, above, 0.2e-3), 0.2e-3);
+  EXPECT_EQ(clampedDepth(plate, above, -1e-3), -1e-3) << "above the rendered surface";
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "ball.obj")));
-  EXPECT_EQ(depthWithin(*edits().scene(), {0, 0, 0.03}, 3e-3), 3e-3);
+  EXPECT_EQ(clampedDepth(*edits().scene(), {0, 0, 0.03}, 3e-3), 3e-3);
 }
 
-TEST_F(Strokes, TheFirstOneWithAnotherToolPaintsWhereItIs) {
+TEST_F(Strokes, FirstOneWithAnotherToolPaintsAtThePointer) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 22), "sphere.ply")));
   type(QStringLiteral("p"));
   pointAt(inView({-120, 0}));

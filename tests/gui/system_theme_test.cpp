@@ -1,16 +1,16 @@
-// The window is dark when the desktop says so, at once and by itself.
+// The window becomes dark at once if the desktop is set to dark.
 #include <QDBusConnectionInterface>
 #include <QDBusMessage>
 #include <QDBusVirtualObject>
 #include <QProcess>
 
-#include "app/gui/window/system_theme.h"
+#include "app/gui/toolkit/system_theme.h"
 #include "gui/window_fixture.h"
 
 namespace patina {
 namespace {
 
-// A desktop's settings portal: answers what it is asked for, and tells of changes.
+// A desktop's settings portal: it answers requests and reports changes.
 class Portal : public QDBusVirtualObject {
  public:
   explicit Portal(QDBusConnection bus) : bus_(std::move(bus)) {
@@ -61,7 +61,8 @@ class SystemThemeTest : public WindowTest {
   QDBusConnection connection(const char* name) {
     return QDBusConnection::connectToBus(address_, QString::fromUtf8(name));
   }
-  bool becomes(const char* window) { // the ground of all widgets
+  // Returns whether the background of all widgets becomes this colour.
+  bool becomes(const char* window) {
     return waitUntil([&] { return window_->palette().color(QPalette::Window) == window; }, 3000);
   }
   static constexpr const char *kDark = "#23272e", *kLight = "#f1f3f6";
@@ -70,22 +71,22 @@ class SystemThemeTest : public WindowTest {
   QString address_;
 };
 
-TEST_F(SystemThemeTest, FollowsWhatThePortalSaysWhileTheWindowIsOpen) {
+TEST_F(SystemThemeTest, FollowsThePortalWhileTheWindowIsOpen) {
   Portal portal(connection("desktop"));
   const SystemTheme theme(application(), connection("window"));
-  EXPECT_TRUE(becomes(kDark)); // what it was asked for
+  EXPECT_TRUE(becomes(kDark)); // the requested value
   portal.change(2);
   EXPECT_TRUE(becomes(kLight));
   portal.change(1);
   EXPECT_TRUE(becomes(kDark));
   EXPECT_EQ(view().view().renderer().GetBackground()[0], palette::kDark.low[0]);
-  portal.change(1, QStringLiteral("contrast")); // of another kind
-  portal.change(0);                             // no wish: the palette of the platform
+  portal.change(1, QStringLiteral("contrast")); // another kind of setting
+  portal.change(0);                             // no preference: the palette of the platform
   EXPECT_TRUE(becomes(kLight));
   EXPECT_EQ(view().view().renderer().GetBackground()[0], palette::kLight.low[0]);
 }
 
-TEST_F(SystemThemeTest, WithoutAPortalOrABusThePaletteOfThePlatformCounts) {
+TEST_F(SystemThemeTest, FallsBackToThePlatformsPaletteWithoutAPortalOrABus) {
   applyStyle(application(), Theme::dark);
   const SystemTheme alone(application(), QDBusConnection(QStringLiteral("nothing")));
   EXPECT_TRUE(becomes(kLight));

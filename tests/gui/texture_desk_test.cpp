@@ -1,5 +1,4 @@
-// From a scan to a feel by pointer alone, as a person who reads nothing does it.
-#ifdef PATINA_HAS_ACQUISITION
+// A user comes from a scan to a touched texture by the pointer alone.
 #include <QMenu>
 
 #include "app/gui/scanning/scan_desk.h"
@@ -24,8 +23,8 @@ class TextureDeskTest : public DrivenWindow {
   }
 };
 
-TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
-  EXPECT_EQ(find<ScanView>("texture_view"), nullptr); // what is absent costs nothing
+TEST_F(TextureDeskTest, TakesAScanToContactByItsButtons) {
+  EXPECT_EQ(find<ScanView>("texture_view"), nullptr); // an absent scan costs nothing
   clickAction("desk_texture");
   EXPECT_FALSE(find<QWidget>("page_profile")->isVisible());
   clickOn("next_step");
@@ -36,7 +35,7 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   clickOn("next_step");
   ASSERT_TRUE(rest());
   EXPECT_TRUE(found("track").contains(QStringLiteral("poses")));
-  // Frames and markers are looked at on the desk Scan, of each scan.
+  // The desk Scan shows frames and markers of each scan.
   auto* look = find<QPushButton>("look_at_scan");
   ASSERT_EQ(look->menu()->actions().size(), 4);
   whenThere([&] { return look->menu(); },
@@ -46,7 +45,8 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
             });
   clickOn("look_at_scan");
   auto* scan = window_->findChild<ScanDesk*>();
-  ASSERT_TRUE(waitUntil([&] { return scan->isOpen() && scan->cells()->isVisible(); }, 60000));
+  ASSERT_TRUE(
+      waitUntil([&] { return scan->isOpen() && scan->centralViews()->isVisible(); }, 60000));
   EXPECT_FALSE(scan->scan().files()->frames.empty());
   EXPECT_FALSE(scan->scan().files()->poses.empty());
   keepPicture("texture_frames");
@@ -74,7 +74,7 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   auto* choice = find<QComboBox>("texture_choice");
   ASSERT_TRUE(choice->isVisible());
   ASSERT_EQ(choice->count(), 3);
-  auto* plot = window_->findChild<ProfilePlot*>();
+  auto* plot = find<PlotWidget>("profile_plot");
   const QImage before = plot->grab().toImage();
   choice->setFocus();
   constexpr std::uint32_t kAway = 0xff54;
@@ -84,6 +84,8 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   EXPECT_NE(plot->grab().toImage(), before);
   keepPicture("texture_weave");
   // The wheel zooms the graph under the pointer, a drag shifts it, a double click shows all.
+  const QPoint away = choice->mapToGlobal({5, 5});
+  pointAt(away);
   const QImage whole = plot->grab().toImage();
   const QPoint in_first = plot->mapToGlobal({plot->width() / 6, plot->height() / 2});
   wheelAt(in_first, 4);
@@ -92,8 +94,9 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   drag(in_first, in_first + QPoint(30, 0));
   EXPECT_NE(plot->grab().toImage(), nearer);
   doubleClickAt(in_first);
+  pointAt(away); // The plot shows the value under the pointer.
   EXPECT_EQ(plot->grab().toImage(), whole);
-  // What was made opens, and is felt.
+  // The new texture opens and is touched.
   clickOn("feel_demo");
   ASSERT_TRUE(waitUntil([&] {
     return window_->windowTitle().contains(QStringLiteral("never saved")) && view().isVisible();
@@ -101,9 +104,9 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   wait(500);
   keepPicture("texture_felt");
   EXPECT_TRUE(window_->isWindowModified());
-  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::press);
+  EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::press);
   EXPECT_EQ(find<ValueRow>("press_force")->findChild<QDoubleSpinBox*>()->value(), 1);
-  // It is in no folder that stays: saving asks for one, and says which it was.
+  // The toy lies in a temporary folder: the first save requests a folder, and the notice names it.
   for (const bool asked : {true, false}) {
     if (asked) answerWithPath(folder_ / "toy.patina");
     type('s', kControl);
@@ -118,7 +121,7 @@ TEST_F(TextureDeskTest, TakesAScanToAFeelByItsButtons) {
   }
 }
 
-TEST_F(TextureDeskTest, TitleHistoryAndGuideAreThoseOfWhatIsShown) {
+TEST_F(TextureDeskTest, TitleHistoryAndGuideMatchTheShownScene) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
   setRow("stiffness", 700);
   ASSERT_TRUE(waitUntil([&] { return edits().status().done == 1; }, 20000));
@@ -138,7 +141,7 @@ TEST_F(TextureDeskTest, TitleHistoryAndGuideAreThoseOfWhatIsShown) {
   keepPicture("texture_begun");
   type('z', kControl);
   wait(300);
-  EXPECT_EQ(edits().status().done, 1U) << "what is not seen is not undone";
+  EXPECT_EQ(edits().status().done, 1U) << "an invisible edit is not undone";
   clickOn("tab_library");
   EXPECT_TRUE(of_scene());
   clickOn("tab_steps");
@@ -146,13 +149,13 @@ TEST_F(TextureDeskTest, TitleHistoryAndGuideAreThoseOfWhatIsShown) {
   clickAction("desk_scan");
   EXPECT_TRUE(find<QWidget>("guide_strip")->isVisible());
   clickAction("desk_texture");
-  desk().cells()->setFocus();
+  desk().centralViews()->setFocus();
   type(kEnter);
   ASSERT_TRUE(desk().work()) << "Enter goes on where a step has ended";
   desk().cancel();
 }
 
-TEST_F(TextureDeskTest, AStepThatIsCancelledBeginsAnew) {
+TEST_F(TextureDeskTest, RestartsACancelledStep) {
   clickAction("desk_texture");
   clickOn("next_step");
   ASSERT_TRUE(desk().work());
@@ -163,7 +166,7 @@ TEST_F(TextureDeskTest, AStepThatIsCancelledBeginsAnew) {
   EXPECT_TRUE(find<QPushButton>("next_step")->text().contains(QStringLiteral("Begin")));
 }
 
-TEST_F(TextureDeskTest, AToyThatCannotBeOpenedLeavesDeskToolAndForce) {
+TEST_F(TextureDeskTest, KeepsDeskToolAndForceIfTheToyDoesNotOpen) {
   clickAction("desk_texture");
   const ToolChoice tool = find<ToolBar>()->choice();
   const auto force = [&] {
@@ -173,14 +176,14 @@ TEST_F(TextureDeskTest, AToyThatCannotBeOpenedLeavesDeskToolAndForce) {
   ASSERT_NE(before, 1);
   bool failed = false;
   QObject::connect(&documents(), &DocumentController::failed, [&] { failed = true; });
-  emit desk().openAsked(QString::fromStdString((folder_ / "gone").string()));
+  emit desk().openRequested(QString::fromStdString((folder_ / "gone").string()));
   ASSERT_TRUE(waitUntil([&] { return failed; }, 20000));
   EXPECT_EQ(window_->controllers().desks.desk(), Desk::texture);
   EXPECT_TRUE(find<ToolBar>()->choice() == tool);
   EXPECT_EQ(force(), before);
 }
 
-TEST_F(TextureDeskTest, ANarrowWindowHasItsButtonsUntilTheyAreFoldedAway) {
+TEST_F(TextureDeskTest, ShowsItsButtonsInANarrowWindowUntilFolded) {
   takeSize(1024, 700);
   clickAction("desk_texture");
   ASSERT_TRUE(find<QPushButton>("next_step")->isVisible());
@@ -189,10 +192,10 @@ TEST_F(TextureDeskTest, ANarrowWindowHasItsButtonsUntilTheyAreFoldedAway) {
   clickOn("tab_steps");
   EXPECT_FALSE(find<QPushButton>("next_step")->isVisible());
   clickAction("desk_scan");
-  EXPECT_LT(find<QWidget>("column")->width(), 60) << "no other desk's";
+  EXPECT_LT(find<QWidget>("column")->width(), 60) << "no part of another desk";
 }
 
-TEST_F(TextureDeskTest, EnterPressesTheMainButtonOrTheOneThatHasTheKeys) {
+TEST_F(TextureDeskTest, EnterPressesTheMainButtonOrTheFocusedOne) {
   clickAction("desk_texture");
   auto* messages = find<QToolButton>("page_messages");
   messages->setFocus(Qt::TabFocusReason);
@@ -201,7 +204,7 @@ TEST_F(TextureDeskTest, EnterPressesTheMainButtonOrTheOneThatHasTheKeys) {
   wait(100);
   EXPECT_LT(find<QWidget>("drawer")->height(), high) << "folded";
   EXPECT_FALSE(desk().work());
-  desk().cells()->setFocus();
+  desk().centralViews()->setFocus();
   type(kEnter);
   ASSERT_TRUE(desk().work()) << "the toy's scan";
   type(kEnter);
@@ -210,7 +213,7 @@ TEST_F(TextureDeskTest, EnterPressesTheMainButtonOrTheOneThatHasTheKeys) {
   desk().cancel();
 }
 
-TEST_F(TextureDeskTest, EnterThatIsHeldOrTypedIntoTextPressesNothing) {
+TEST_F(TextureDeskTest, HeldEnterAndEnterInTextPressNothing) {
   clickAction("desk_texture");
   const auto enter = [](QWidget& to, bool again) {
     QKeyEvent event(QEvent::KeyPress, Qt::Key_Return, Qt::NoModifier, QStringLiteral("\r"), again);
@@ -220,8 +223,8 @@ TEST_F(TextureDeskTest, EnterThatIsHeldOrTypedIntoTextPressesNothing) {
   next->setFocus();
   enter(*next, true);
   EXPECT_FALSE(desk().work());
-  desk().cells()->setFocus();
-  enter(*desk().cells(), true);
+  desk().centralViews()->setFocus();
+  enter(*desk().centralViews(), true);
   EXPECT_FALSE(desk().work());
   auto* line = new QLineEdit(next->parentWidget());
   line->show();
@@ -237,7 +240,7 @@ TEST_F(TextureDeskTest, EnterThatIsHeldOrTypedIntoTextPressesNothing) {
   desk().cancel();
 }
 
-TEST_F(TextureDeskTest, TheMainButtonAndTheOneThatHasTheKeysLookDifferent) {
+TEST_F(TextureDeskTest, MainButtonAndFocusedButtonLookDifferent) {
   clickAction("desk_texture");
   auto* main = find<QPushButton>("next_step");
   auto* other = find<QPushButton>("all_steps");
@@ -252,4 +255,3 @@ TEST_F(TextureDeskTest, TheMainButtonAndTheOneThatHasTheKeysLookDifferent) {
 
 } // namespace
 } // namespace patina
-#endif

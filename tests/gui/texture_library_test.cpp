@@ -1,11 +1,11 @@
-// Textures read from files, laid along a path that is drawn, swapped and taken off: by pointer and
+// Textures are read from files, laid along a drawn path, exchanged and removed: by pointer and
 // keys.
-#ifdef PATINA_HAS_ACQUISITION
 #include <cmath>
 
 #include "app/gui/control/desk_controller.h"
+#include "app/gui/texturing/scene_textures.h"
 #include "app/gui/texturing/texture_desk.h"
-#include "app/gui/texturing/texture_edits.h"
+#include "app/gui/texturing/texture_library.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 #include "workspace/texture_file.h"
@@ -21,7 +21,7 @@ class TextureLibraryTest : public DrivenWindow {
     texture.omega = 2 * M_PI / wavelength;
     texture.series.a = {amplitude, 0};
     texture.series.b = {0, 0.3 * amplitude};
-    texture.low = leastHeight(texture);
+    texture.low = minHeight(texture);
     return texture;
   }
   void SetUp() override {
@@ -37,7 +37,7 @@ class TextureLibraryTest : public DrivenWindow {
   }
   ScanView& cell() { return *find<ScanView>("lay_view"); }
   QListWidget& list() { return *find<QListWidget>("textures"); }
-  const LaidTextures* laid() {
+  const TextureMappings* laid() {
     const auto& paint = edits().scene()->scene.objects[0].paint;
     return paint ? paint->textures.get() : nullptr;
   }
@@ -63,14 +63,14 @@ class TextureLibraryTest : public DrivenWindow {
   }
 };
 
-TEST_F(TextureLibraryTest, ATextureIsLaidAlongWhatIsDrawnAndUndone) {
-  EXPECT_FALSE(find<QPushButton>("texture_draw")->isVisible()); // there is none to lay
+TEST_F(TextureLibraryTest, LaysATextureAlongADrawnPathAndUndoesIt) {
+  EXPECT_FALSE(find<QPushButton>("texture_draw")->isVisible()); // there is no texture to lay
   read("ribs.json");
   clickOn("texture_draw");
   ASSERT_TRUE(draw(at(-0.2, 0.05), at(0.2, 0.05)));
   ASSERT_NE(laid(), nullptr);
   keepPicture("texture_library");
-  // Where it lies: x grows with the hand, 1 m a metre, and nothing lies far from what was drawn.
+  // The layout: x grows along the hand's path, 1 m a metre, and no face lies far from the path.
   const auto& mesh = *edits().scene()->scene.objects[0].mesh;
   EXPECT_GT(laid()->faces.size(), 50U);
   EXPECT_EQ(laid()->library.at(1)->value.name, "ribs");
@@ -83,16 +83,16 @@ TEST_F(TextureLibraryTest, ATextureIsLaidAlongWhatIsDrawnAndUndone) {
       const Vec3& b =
           mesh.positions[static_cast<std::size_t>(corners[static_cast<std::size_t>((k + 1) % 3)])];
       const double way = (b - a).norm();
-      const double drawn =
-          (face.at[static_cast<std::size_t>((k + 1) % 3)] - face.at[static_cast<std::size_t>(k)])
-              .norm();
+      const double drawn = (face.coords[static_cast<std::size_t>((k + 1) % 3)] -
+                            face.coords[static_cast<std::size_t>(k)])
+                               .norm();
       most = std::max(most, drawn / way);
       least = std::min(least, drawn / way);
     }
   }
   EXPECT_LT(most, 1.5);
   EXPECT_GT(least, 0.5);
-  // It is felt: the stage that reads it is there.
+  // The servo has the texture's stage.
   EXPECT_TRUE(list().item(0)->text().contains(QStringLiteral("ribs, on")))
       << list().item(0)->text().toStdString();
   EXPECT_TRUE(find<QWidget>("page_profile")->isVisible());
@@ -110,8 +110,9 @@ TEST_F(TextureLibraryTest, ATextureIsLaidAlongWhatIsDrawnAndUndone) {
   ASSERT_TRUE(waitUntil([&] { return laid() != nullptr && laid()->faces.size() == faces; }, 10000));
 }
 
-TEST_F(TextureLibraryTest, TheFacesOfTheChosenOneStandOut) {
-  const auto orange = [this](bool right) { // of the picture's halves
+TEST_F(TextureLibraryTest, HighlightsTheFacesOfTheChosenTexture) {
+  // Counts the orange pixels of the picture's right or left half.
+  const auto orange = [this](bool right) {
     cell().refresh();
     const QImage picture = cell().grabFramebuffer();
     int count = 0;
@@ -143,7 +144,7 @@ TEST_F(TextureLibraryTest, TheFacesOfTheChosenOneStandOut) {
   EXPECT_LT(orange(true), 20);
 }
 
-TEST_F(TextureLibraryTest, AnotherTakesItsPlaceOnEveryFaceAndItIsTakenOff) {
+TEST_F(TextureLibraryTest, ExchangesATextureOnEveryFaceAndRemovesIt) {
   read("ribs.json");
   clickOn("texture_draw");
   ASSERT_TRUE(draw(at(-0.15, 0), at(0.15, 0.1)));
@@ -157,25 +158,25 @@ TEST_F(TextureLibraryTest, AnotherTakesItsPlaceOnEveryFaceAndItIsTakenOff) {
   EXPECT_TRUE(laid()->library.at(1)->value == readTexture(folder_ / "felt.json"));
   clickOn("texture_remove");
   ASSERT_TRUE(waitUntil([&] { return laid() == nullptr; }, 20000));
-  EXPECT_TRUE(list().item(0)->text().contains(QStringLiteral("not laid")));
-  // What is kept is the texture again.
+  EXPECT_TRUE(list().item(0)->text().contains(QStringLiteral("unused")));
+  // The kept file contains the texture.
   answerWithPath(folder_ / "kept.json");
   clickOn("texture_keep");
   ASSERT_TRUE(waitUntil([&] { return std::filesystem::exists(folder_ / "kept.json"); }, 10000));
   EXPECT_TRUE(readTexture(folder_ / "kept.json") == readTexture(folder_ / "felt.json"));
 }
 
-TEST_F(TextureLibraryTest, TheProfileIsThereAgainAfterAnotherDesk) {
+TEST_F(TextureLibraryTest, RestoresTheProfileAfterAnotherDesk) {
   read("ribs.json");
   ASSERT_TRUE(find<QWidget>("page_profile")->isVisible());
   clickAction("desk_feel");
   EXPECT_FALSE(find<QWidget>("page_profile")->isVisible());
   clickAction("desk_texture");
   EXPECT_TRUE(find<QWidget>("page_profile")->isVisible());
-  EXPECT_TRUE(window_->findChild<ProfilePlot*>()->isVisible());
+  EXPECT_TRUE(find<PlotWidget>("profile_plot")->isVisible());
 }
 
-TEST_F(TextureLibraryTest, WithoutPenOrTextureTheHandTurnsThePictureAndWithoutAScanItIsSaid) {
+TEST_F(TextureLibraryTest, HandTurnsThePictureWithoutPenOrTextureAndAMissingScanIsReported) {
   const std::size_t done = edits().status().done;
   drag(at(-0.1, 0), at(0.1, 0));
   wait(300);
@@ -192,15 +193,15 @@ TEST_F(TextureLibraryTest, WithoutPenOrTextureTheHandTurnsThePictureAndWithoutAS
 }
 
 // Three faces have a texture, one of them two.
-TEST(TexturedParts, EachFaceIsOfTheChosenTextureOrOfTheRest) {
+TEST(TexturedFaces, ContainTheChosenTexturesFacesAndTheRest) {
   Scene scene;
   scene.objects.push_back({"ball",
                            std::make_shared<const TriangleMesh>(icosphere(0.03, 4)),
                            Pose(Eigen::Translation3d(0.1, 0, 0)),
                            {}});
   const TriangleMesh& mesh = *scene.objects[0].mesh;
-  EXPECT_EQ(texturedParts(scene, {}).meant, nullptr);
-  auto laid = std::make_shared<LaidTextures>();
+  EXPECT_EQ(texturedParts(scene, {}).selected, nullptr);
+  auto laid = std::make_shared<TextureMappings>();
   for (const auto& [face, number] : {std::pair{7, 1}, {7, 2}, {3, 1}, {5, 2}}) {
     TexturedFace on;
     on.face = face;
@@ -231,8 +232,8 @@ TEST(TexturedParts, EachFaceIsOfTheChosenTextureOrOfTheRest) {
   };
   const auto expect = [&](std::optional<std::int32_t> number, std::initializer_list<int> meant,
                           std::initializer_list<int> rest) {
-    const TexturedParts parts = texturedParts(scene, number);
-    for (const auto& [part, those] : {std::pair{parts.meant, meant}, {parts.rest, rest}}) {
+    const TexturedFaces parts = texturedParts(scene, number);
+    for (const auto& [part, those] : {std::pair{parts.selected, meant}, {parts.others, rest}}) {
       const auto found = middles(part), wanted = faces(those);
       ASSERT_EQ(found.size(), wanted.size());
       for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-12);
@@ -246,4 +247,3 @@ TEST(TexturedParts, EachFaceIsOfTheChosenTextureOrOfTheRest) {
 
 } // namespace
 } // namespace patina
-#endif

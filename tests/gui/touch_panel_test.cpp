@@ -1,11 +1,11 @@
-// Modes, device and stabilisers: what the panels say is what the servo gets.
+// Modes, device and stabilisers: the servo gets the panels' values.
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QToolButton>
 
-#include "app/gui/panels/value_row.h"
+#include "app/gui/toolkit/value_row.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/window_fixture.h"
 
@@ -23,8 +23,8 @@ class TouchPanels : public WindowTest {
   }
   void click(const char* name) {
     find<QToolButton>(name)->click();
-    edits().tryValues(); // not with the window's next tick
-    edits().settle();
+    edits().previewValues(); // before the window's next tick
+    edits().waitForEdits();
     wait(150);
   }
   const Scene& scene() { return edits().scene()->scene; }
@@ -56,12 +56,12 @@ TEST_F(TouchPanels, OffsetAndMagnetExcludeEachOther) {
   EXPECT_FALSE(scene().haptics.magnet->fades);
   click("mode_contact");
   ASSERT_TRUE(waitUntil([&] { return !scene().haptics.magnet.has_value(); }, 10000));
-  click("mode_magnetic"); // comes back as it was left
+  click("mode_magnetic"); // the mode's values are restored
   ASSERT_TRUE(waitUntil([&] { return scene().haptics.magnet.has_value(); }, 10000));
   EXPECT_EQ(scene().haptics.magnet->strength, 450);
 }
 
-TEST_F(TouchPanels, AnOffsetIsFeltOutsideAndContactIsSeenOnTheSurface) { // K12
+TEST_F(TouchPanels, OffsetActsOutsideAndContactIsDrawnOnTheSurface) { // K12
   click("mode_offset");
   setRow("offset", 1.0);
   wait(150);
@@ -75,7 +75,7 @@ TEST_F(TouchPanels, AnOffsetIsFeltOutsideAndContactIsSeenOnTheSurface) { // K12
   EXPECT_NEAR(sample.force.norm(), 500 * depth, 0.05);
 }
 
-TEST_F(TouchPanels, TheBandIsThereOnlyWithAnOffsetOrAMagnet) {
+TEST_F(TouchPanels, BandIsShownOnlyWithAnOffsetOrAMagnet) {
   show(Layer::tip, false);
   EXPECT_FALSE(find<QCheckBox>("band")->isVisibleTo(find<DisplayPanel>()));
   EXPECT_EQ(goldShare(), 0);
@@ -86,7 +86,7 @@ TEST_F(TouchPanels, TheBandIsThereOnlyWithAnOffsetOrAMagnet) {
   EXPECT_EQ(goldShare(), 0);
 }
 
-TEST_F(TouchPanels, AMagnetPullsFromOutside) { // K13
+TEST_F(TouchPanels, MagnetPullsFromOutside) { // K13
   pressMiddle(0);
   turnWheel(-1);
   wait(300);
@@ -112,7 +112,7 @@ TEST_F(TouchPanels, ContactAndCutOffReachTheScene) {
   EXPECT_FALSE(scene().haptics.damping_cutoff.has_value());
 }
 
-TEST_F(TouchPanels, AnEditThatTheFieldDoesNotHoldSaysSoAndIsNotFelt) {
+TEST_F(TouchPanels, EditBeyondTheFieldIsReportedAndNotRendered) {
   const auto felt = edits().scene();
   HapticProperties haptics = find<HapticsPanel>()->values();
   haptics.offset = 0.2;
@@ -120,13 +120,13 @@ TEST_F(TouchPanels, AnEditThatTheFieldDoesNotHoldSaysSoAndIsNotFelt) {
   emit find<HapticsPanel>()->edited(haptics);
   wait(150);
   EXPECT_EQ(edits().scene(), felt);
-  bool said = false;
+  bool notified = false;
   for (const QLabel* label : find<HapticsPanel>()->findChildren<QLabel*>())
-    said = said || (label->isVisible() && label->text().contains(QStringLiteral("band")));
-  EXPECT_TRUE(said);
+    notified = notified || (label->isVisible() && label->text().contains(QStringLiteral("band")));
+  EXPECT_TRUE(notified);
 }
 
-TEST_F(TouchPanels, DeviceNumbersAreThereForASimulatedDeviceAndMakeTheLoopSafe) {
+TEST_F(TouchPanels, DeviceNumbersAppearForASimulatedDeviceAndStabiliseTheLoop) {
   EXPECT_EQ(find<QToolButton>("device_numbers"), nullptr);
   find<QComboBox>("device")->setCurrentIndex(1);
   wait(150);
@@ -155,9 +155,9 @@ TEST_F(TouchPanels, DeviceNumbersAreThereForASimulatedDeviceAndMakeTheLoopSafe) 
   EXPECT_TRUE(waitUntil([&] { return !scene().device_model.has_value(); }));
 }
 
-TEST_F(TouchPanels, EnergyGoesInAsTheTipDoes) {
+TEST_F(TouchPanels, EnergyRisesAsTheTipGoesIn) {
   pressMiddle(0);
-  feel().startLog();
+  startLog();
   turnWheel(3);
   wait(500);
   const ToolSample sample = feel().sample();
@@ -165,11 +165,11 @@ TEST_F(TouchPanels, EnergyGoesInAsTheTipDoes) {
   const double depth = kBall - sample.tip.norm();
   const double spring = 0.5 * 500 * depth * depth;
   EnergyMeter meter;
-  for (const ToolSample& tick : feel().log().samples()) meter.add(tick);
+  for (const ToolSample& tick : logged()) meter.add(tick);
   EXPECT_NEAR(meter.ledger.absorbed, spring, 0.1 * spring);
 }
 
-TEST_F(TouchPanels, TheStabilityMapComesWhenItIsAskedFor) {
+TEST_F(TouchPanels, StabilityMapAppearsOnRequest) {
   show(Layer::tip, false);
   setRow("stiffness", 8000);
   wait(150);
@@ -180,7 +180,7 @@ TEST_F(TouchPanels, TheStabilityMapComesWhenItIsAskedFor) {
   auto* words = find<QLabel>("stability_words");
   EXPECT_TRUE(words->isVisible());
   ASSERT_TRUE(waitUntil([&] { return words->text().contains(QStringLiteral("K*/K")); }));
-  EXPECT_LT(surfaceShare(), 0.5 * sage); // the map stands where the mesh was
+  EXPECT_LT(surfaceShare(), 0.5 * sage); // the map replaces the mesh
   EXPECT_TRUE(words->text().contains(QStringLiteral("100 %"))) << words->text().toStdString();
   show(Layer::stability, false);
   wait(60);

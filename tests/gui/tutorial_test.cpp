@@ -1,5 +1,5 @@
-// The tutorial is a test: every click, drag and key that it names comes through the window system,
-// and its commands are run as they stand there.
+// The tutorial as a test: every click, drag and key that it names comes through the window system,
+// and its commands run as printed.
 #include <fstream>
 #include <sstream>
 
@@ -35,7 +35,7 @@ class Tutorial : public DrivenWindow {
     type(kEnter);
   }
   template <typename Done> bool soon(Done done) { return waitUntil(done, 20000); }
-  // Notches until the tip is pressed with more than so many newtons.
+  // Turns the wheel until the tip is pressed with more than so many newtons.
   void pressIn(double newtons) {
     for (int i = 0; i < 30 && force() < newtons; ++i) {
       wheelAt(flank_, 1);
@@ -69,6 +69,14 @@ void Tutorial::start() {
 
 void Tutorial::touch() {
   flank_ = inView({0, 0});
+  // A window begins with this tool, but this fixture with another one.
+  find<ToolBar>()->choose({InteractionMode::press, {}});
+  pointAt(flank_ - QPoint(20, 0));
+  press();
+  for (int i = 0; i <= 10; ++i) pointAt(flank_ + QPoint(4 * i - 20, 0));
+  EXPECT_GT(force(), 0.2);
+  release();
+  type(QStringLiteral("v"));
   doubleClickAt(flank_);
   wait(300);
   EXPECT_LT(force(), 0.2);
@@ -88,13 +96,13 @@ void Tutorial::touch() {
 
 void Tutorial::stroke() {
   type(QStringLiteral("q"));
-  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::press);
-  feel().startLog();
+  EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::press);
+  startLog();
   pointAt(flank_ - QPoint(60, 0));
   press();
   for (int i = 0; i <= 20; ++i) pointAt(flank_ + QPoint(-60 + 6 * i, 0));
   keepPicture("feel");
-  const auto samples = feel().log().samples();
+  const auto samples = logged();
   release();
   std::size_t pressed = 0;
   double most = 0;
@@ -104,7 +112,6 @@ void Tutorial::stroke() {
   }
   EXPECT_LT(most, 1.6) << "0.8 N are set, and a stroke begins on the surface";
   EXPECT_GT(pressed, samples.size() / 2);
-  feel().log().clear();
   const auto eye = [this] {
     return Vec3(view().view().renderer().GetActiveCamera()->GetPosition());
   };
@@ -116,7 +123,7 @@ void Tutorial::stroke() {
   type(QStringLiteral("7")); // back, and fitted
   type(QStringLiteral("f"));
   type(QStringLiteral("v"));
-  EXPECT_EQ(find<ToolBar>()->choice().handling, Handling::feel);
+  EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::feel);
   wait(200);
 }
 
@@ -208,7 +215,7 @@ void Tutorial::ownMesh() {
   type('o', kControl);
   ASSERT_TRUE(soon([&] { return ready; }));
   QObject::disconnect(connection);
-  wait(500); // until the window has laid itself out anew
+  wait(500); // the window's layout needs time
   clickOn("tab_object");
   EXPECT_TRUE(soon([&] { return find<ObjectPanel>()->isVisible(); }));
   bool defect = false;
@@ -236,7 +243,7 @@ void Tutorial::takeHome() {
   EXPECT_TRUE(window_->windowTitle().startsWith(QStringLiteral("scene.patina")));
 }
 
-// All lines of the tutorial that are indented, but the first of them, which starts the window.
+// Returns all indented lines of the tutorial except the first, which starts the window.
 std::string commandsOfTutorial() {
   std::ifstream text(test::sourceFolder() / "docs/tutorial.md");
   std::string all;
@@ -247,22 +254,22 @@ std::string commandsOfTutorial() {
 }
 
 void Tutorial::commands() {
-  documents().setAsks(false);
+  documents().setInteractive(false);
   ASSERT_TRUE(window_->close());
-  window_.reset(); // with which the program ends
+  window_.reset(); // the program ends with it
   std::filesystem::create_directory_symlink(test::programFolder().parent_path(), folder_ / "build");
   std::ofstream(folder_ / "commands.sh") << commandsOfTutorial();
   const std::string run = "cd '" + folder_.string() + "' && sh -e commands.sh > said.txt 2>&1";
   const int code = std::system(run.c_str());
-  std::ostringstream said;
-  said << std::ifstream(folder_ / "said.txt").rdbuf();
-  EXPECT_EQ(code, 0) << said.str();
+  std::ostringstream notified;
+  notified << std::ifstream(folder_ / "said.txt").rdbuf();
+  EXPECT_EQ(code, 0) << notified.str();
   EXPECT_GT(readCsv(folder_ / "forces.csv", {"t [s]"}).rows.size(), 100U);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "picture.png"));
   EXPECT_EQ(loadWorkspace(folder_ / "scene.patina").objects[0].paint, nullptr) << "it is undone";
 }
 
-TEST_F(Tutorial, EachStepIsDoneAsItIsWritten) {
+TEST_F(Tutorial, EachStepWorksAsWritten) {
   const std::pair<const char*, void (Tutorial::*)()> steps[] = {
       {"start", &Tutorial::start},
       {"touch", &Tutorial::touch},

@@ -1,5 +1,4 @@
 // Wheel and keys over the side panel's values.
-#include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QKeyEvent>
 #include <QScrollArea>
@@ -21,7 +20,7 @@ class ValueFields : public WindowTest {
     ASSERT_TRUE(open(saved(icosphere(0.03, 12), "sphere.obj")));
     show(Layer::slice, true);
     show(Layer::iso, true);
-    window_->resize(1100, 440); // or there is nothing to scroll
+    window_->resize(1100, 440); // small enough to scroll
     addProperty("Friction");
     addProperty("Damping");
     window_->activateWindow();
@@ -34,7 +33,8 @@ class ValueFields : public WindowTest {
     const QPoint at = over.rect().center();
     QWheelEvent event(at, over.mapToGlobal(at), {}, {0, 120 * notches}, Qt::NoButton,
                       Qt::NoModifier, Qt::NoScrollPhase, false);
-    // As from the window system: a program's own event neither gives focus nor goes on to parents.
+    // The events come from the window system: a program's own event neither gives focus nor goes on
+    // to parents.
     QSpontaneKeyEvent::setSpontaneous(&event);
     application().notify(&over, &event);
   }
@@ -50,7 +50,7 @@ class ValueFields : public WindowTest {
   QScrollArea* scroll_ = nullptr;
 };
 
-TEST_F(ValueFields, TheWheelScrollsThePanelAndChangesNoValue) {
+TEST_F(ValueFields, WheelScrollsThePanelAndChangesNoValue) {
   const auto tried = [this](QWidget* widget, const auto& value) {
     ASSERT_NE(widget, nullptr);
     EXPECT_EQ(widget->focusPolicy(), Qt::StrongFocus);
@@ -62,33 +62,33 @@ TEST_F(ValueFields, TheWheelScrollsThePanelAndChangesNoValue) {
   };
   ASSERT_TRUE(waitUntil([&] { return scroll_->verticalScrollBar()->maximum() > 0; }, 5000));
   auto* slider = find<HapticsPanel>()->findChild<QSlider*>();
-  auto* choice = find<DisplayPanel>()->findChild<QComboBox*>();
+  auto* position = find<ValueRow>("slice_position")->findChild<QSlider*>();
   tried(stiffness(), [this] { return stiffness()->value(); });
   tried(slider, [=] { return slider->value(); });
   openTab("show");
-  ASSERT_TRUE(waitUntil([&] { return choice->isVisible(); }, 5000));
+  ASSERT_TRUE(waitUntil([&] { return position->isVisible(); }, 5000));
   find<DisplayPanel>()->setStabilityNote(QStringLiteral("one\ntwo\nthree\nfour\nfive"));
   ASSERT_TRUE(waitUntil([&] { return scroll_->verticalScrollBar()->maximum() > 0; }, 5000));
-  tried(choice, [=] { return choice->currentIndex(); });
+  tried(position, [=] { return position->value(); });
 }
 
-TEST_F(ValueFields, TheWheelTurnsTheValueThatIsBeingEdited) {
+TEST_F(ValueFields, WheelChangesTheEditedValue) {
   stiffness()->setFocus();
   const double before = stiffness()->value();
   wheel(*stiffness(), 1);
   EXPECT_GT(stiffness()->value(), before);
 }
 
-TEST_F(ValueFields, EnterTakesTheNumberAndGivesTheKeysToTheView) {
+TEST_F(ValueFields, EnterAcceptsTheNumberAndFocusesTheView) {
   type(QStringLiteral("432"));
   key(*stiffness(), Qt::Key_Return);
   EXPECT_EQ(QApplication::focusWidget(), &view());
   EXPECT_EQ(find<HapticsPanel>()->values().stiffness, 432);
-  key(*stiffness(), Qt::Key_Enter); // leaves alone what was not edited
+  key(*stiffness(), Qt::Key_Enter); // leaves an unedited value unchanged
   EXPECT_EQ(find<HapticsPanel>()->values().stiffness, 432);
 }
 
-TEST_F(ValueFields, EscapeDropsWhatWasTypedAndGivesTheKeysToTheView) {
+TEST_F(ValueFields, EscapeDiscardsTheTextAndFocusesTheView) {
   const double before = find<HapticsPanel>()->values().stiffness;
   type(QStringLiteral("432"));
   key(*stiffness(), Qt::Key_Escape);

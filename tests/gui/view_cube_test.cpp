@@ -5,7 +5,7 @@
 #include "app/gui/control/view_controller.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
-#include "visualization/view/camera.h"
+#include "visualization/values/camera.h"
 
 namespace patina {
 namespace {
@@ -19,7 +19,7 @@ class ViewCubeTest : public DrivenWindow {
   }
   vtkCamera& camera() { return *view().view().renderer().GetActiveCamera(); }
   Vec3 from() { return -viewDirection(camera()); }
-  // Of the screen, in the middle of what of that side is seen; none: it is not.
+  // Returns the centre of a side's visible pixels on the screen, or nothing if the side is hidden.
   std::optional<QPoint> placeOf(const Vec3& side) {
     QPoint sum;
     int count = 0;
@@ -31,7 +31,8 @@ class ViewCubeTest : public DrivenWindow {
     if (count == 0) return std::nullopt;
     return view().mapToGlobal(sum / count);
   }
-  // From where the camera has looked since `act`, each turn of it, until it looks from the side.
+  // Returns the directions to the camera after `act`, one for each change, until the camera looks
+  // from the side.
   std::vector<Vec3> turnsOf(const std::function<void()>& act, const Vec3& side) {
     std::vector<Vec3> turns;
     std::function<void()> note = [&] {
@@ -51,12 +52,12 @@ class ViewCubeTest : public DrivenWindow {
   bool looksFrom(const Vec3& side) { return (from() - side.normalized()).norm() < 1e-9; }
 };
 
-TEST_F(ViewCubeTest, AClickLooksFromTheSideThatWasClickedBySmallTurns) {
+TEST_F(ViewCubeTest, ClickTurnsTheViewToTheClickedSideInSmallSteps) {
   if (IsSkipped()) return;
-  int in_turns = 0; // of sides
+  int in_turns = 0; // sides
   for (const Vec3& side : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(1, -1, 1)}) {
     trigger("view_iso");
-    wait(150); // the cube goes with the picture
+    wait(150); // the cube follows the picture
     const double distance = camera().GetDistance();
     const Vec3 centre(camera().GetFocalPoint()), begun = from();
     const auto place = placeOf(side);
@@ -75,11 +76,11 @@ TEST_F(ViewCubeTest, AClickLooksFromTheSideThatWasClickedBySmallTurns) {
     EXPECT_LT((Vec3(camera().GetFocalPoint()) - centre).norm(), 1e-9);
     EXPECT_NEAR(camera().GetDistance(), distance, 1e-9);
   }
-  // Where the machine stood still for the whole of a turn's time there is but its end.
+  // If the machine stood still for the whole animation, only its end is seen.
   EXPECT_GE(in_turns, 1) << "not in one step";
 }
 
-TEST_F(ViewCubeTest, ADragTurnsAndIsNoClick) {
+TEST_F(ViewCubeTest, DragTurnsAndIsNoClick) {
   if (IsSkipped()) return;
   const auto place = placeOf(Vec3(0, -1, 0));
   ASSERT_TRUE(place.has_value());
@@ -93,7 +94,7 @@ TEST_F(ViewCubeTest, ADragTurnsAndIsNoClick) {
   EXPECT_EQ(from(), turned);
 }
 
-TEST_F(ViewCubeTest, BesideItTheLeftButtonIsTheTools) {
+TEST_F(ViewCubeTest, LeftButtonBesideTheCubeBelongsToTheTool) {
   if (IsSkipped()) return;
   const Vec3 before = from(), target = view().target();
   drag(inView({0, 0}), inView({30, 0}));

@@ -1,4 +1,4 @@
-// The page that stands where nothing is open, by pointer and keys.
+// The start page, which is shown if nothing is open, by pointer and keys.
 #include "app/gui/window/welcome_page.h"
 
 #include <QRegularExpression>
@@ -26,16 +26,16 @@ class WelcomeTest : public DrivenWindow {
   }
 };
 
-TEST_F(WelcomeTest, APresetOpensByAClickAndThePageGoes) {
+TEST_F(WelcomeTest, ClickOpensAPresetAndHidesThePage) {
   if (IsSkipped()) return;
   ASSERT_TRUE(page().isVisible());
   clickOn("preset_ball");
   ASSERT_TRUE(isOpen("ball"));
   EXPECT_FALSE(page().isVisible());
-  EXPECT_TRUE(view().hasFocus()) << "keys are the view's";
+  EXPECT_TRUE(view().hasFocus()) << "the view has the focus";
 }
 
-TEST_F(WelcomeTest, APresetIsNotWarnedOf) {
+TEST_F(WelcomeTest, PresetsCauseNoWarning) {
   if (IsSkipped()) return;
   clickOn("preset_dinosaur"); // parts of its feet are thin
   ASSERT_TRUE(isOpen("dinosaur"));
@@ -44,7 +44,7 @@ TEST_F(WelcomeTest, APresetIsNotWarnedOf) {
       << find<MessagePanel>()->item(0)->text().toStdString();
 }
 
-TEST_F(WelcomeTest, TheFirstPresetOpensByEnterAndTabGoesToTheOthers) {
+TEST_F(WelcomeTest, EnterOpensTheFirstPresetAndTabReachesTheOthers) {
   if (IsSkipped()) return;
   ASSERT_TRUE(waitUntil([&] { return find<QToolButton>("preset_dinosaur")->hasFocus(); }, 2000));
   type(kTab);
@@ -53,7 +53,7 @@ TEST_F(WelcomeTest, TheFirstPresetOpensByEnterAndTabGoesToTheOthers) {
   ASSERT_TRUE(isOpen("pottery"));
 }
 
-TEST_F(WelcomeTest, WhatWasOpenedBeforeIsOfferedAtTheNextStart) {
+TEST_F(WelcomeTest, OffersRecentFilesAtTheNextStart) {
   if (IsSkipped()) return;
   ASSERT_TRUE(open(saved(icosphere(30, 12), "round.obj"), MeshUnit::mm));
   restart();
@@ -67,9 +67,9 @@ TEST_F(WelcomeTest, WhatWasOpenedBeforeIsOfferedAtTheNextStart) {
   FAIL() << "round.obj is not there";
 }
 
-TEST_F(WelcomeTest, ALoadThatComesToNothingBringsThePageBack) {
+TEST_F(WelcomeTest, FailedLoadBringsThePageBack) {
   if (IsSkipped()) return;
-  documents().setAsks(false);
+  documents().setInteractive(false);
   bool failed = false;
   QObject::connect(&documents(), &DocumentController::failed, [&] { failed = true; });
   whenThere([] { return QApplication::activeModalWidget(); }, [this](QWidget&) { type(kEscape); });
@@ -79,7 +79,7 @@ TEST_F(WelcomeTest, ALoadThatComesToNothingBringsThePageBack) {
   EXPECT_TRUE(waitUntil([&] { return page().isVisible(); }, 2000));
 }
 
-TEST_F(WelcomeTest, TheGuideLeadsToTheScan) {
+TEST_F(WelcomeTest, GuideLeadsToTheScan) {
   if (IsSkipped()) return;
   if (find<QPushButton>("welcome_guide") == nullptr) GTEST_SKIP() << "built without scans";
   clickOn("welcome_guide");
@@ -87,9 +87,9 @@ TEST_F(WelcomeTest, TheGuideLeadsToTheScan) {
   EXPECT_TRUE(find<GuideStrip>()->isVisible());
 }
 
-TEST_F(WelcomeTest, ItsCardsAreWholeAndInTheMiddleWithNothingBesideThem) {
+TEST_F(WelcomeTest, CardsAreWholeAndCentredWithNothingBesideThem) {
   if (IsSkipped()) return;
-  clickAction("desk_paint"); // whose drawer is open
+  clickAction("desk_paint"); // its drawer is open
   takeSize(1280, 620);
   auto* splitter = find<QSplitter>("across");
   EXPECT_FALSE(splitter->handle(1)->isVisible());
@@ -111,7 +111,7 @@ TEST_F(WelcomeTest, ItsCardsAreWholeAndInTheMiddleWithNothingBesideThem) {
   EXPECT_NEAR(find<QWidget>("column")->width(), 300, 2);
 }
 
-TEST(Presets, EachIsASceneOfOneObjectWithAPicture) {
+TEST(Presets, HaveOneObjectAndAPictureEach) {
   if (!test::hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
   application();
   for (const Preset& preset : presets()) {

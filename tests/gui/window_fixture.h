@@ -8,23 +8,25 @@
 
 #include <QApplication>
 #include <QCheckBox>
+#include <QElapsedTimer>
 #include <QMenu>
 #include <QMouseEvent>
 #include <QSettings>
+#include <QTimer>
 #include <QToolButton>
 #include <QWheelEvent>
 #include <gtest/gtest.h>
 
+#include "app/gui/panels/tool_bar.h"
+#include "app/gui/toolkit/theme.h"
 #include "app/gui/window/main_window.h"
-#include "app/gui/window/theme.h"
-#include "app/gui/window/wait.h"
 #include "geometry/io/mesh_io.h"
 #include "support/fresh_folder.h"
 #include "support/own_display.h"
 
 namespace patina {
 
-// Qt wants one application a process, made in main's thread and never twice.
+// Qt needs one application a process, made in main's thread and never twice.
 inline QApplication& application() {
   static int count = 1;
   static char name[] = "gui_tests";
@@ -41,6 +43,28 @@ inline QApplication& application() {
   return *made;
 }
 
+// Waits in the window's thread while events are processed. Returns false on time-out. Checks `done`
+// after each event, and sleeps in between.
+inline bool waitUntil(const std::function<bool()>& done, int milliseconds) {
+  QElapsedTimer clock;
+  clock.start();
+  // processEvents with a time limit returns at once without events, so it would use all CPU time.
+  QTimer wake;
+  wake.setTimerType(Qt::PreciseTimer);
+  wake.start(5);
+  while (!done()) {
+    if (clock.elapsed() > milliseconds) return false;
+    QApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents);
+    // The program's event loop deletes what is to be deleted later; processEvents() leaves it.
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
+  }
+  return true;
+}
+
+inline void wait(int milliseconds) {
+  waitUntil([] { return false; }, milliseconds);
+}
+
 class WindowTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -50,12 +74,14 @@ class WindowTest : public ::testing::Test {
                        QString::fromStdString(folder_.string()));
     application();
     QSettings().clear();
-    // Scenes that a window keeps against a crash are this test's, too.
+    // Scenes that a window keeps for recovery go to this test's folder, too.
     setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 0);
     window_ = std::make_unique<MainWindow>();
     window_->resize(1100, 760);
     window_->show();
     wait(50);
+    // Most tests move the free tip; tests/gui/first_touch_test.cpp has the window as it opens.
+    find<ToolBar>()->choose({InteractionMode::feel, {}});
   }
   void TearDown() override {
     window_.reset();
@@ -72,7 +98,7 @@ class WindowTest : public ::testing::Test {
     writeMesh(folder_ / name, mesh);
     return folder_ / name;
   }
-  // In metres, so that no question about the unit comes up.
+  // The file is in metres, so that no question about the unit comes up.
   bool open(const std::filesystem::path& path, MeshUnit unit = MeshUnit::m) {
     bool ready = false;
     const auto connection =
@@ -91,7 +117,8 @@ class WindowTest : public ::testing::Test {
     return request;
   }
 
-  // What is no widget: all else is found by its name, and driven as a person does.
+  // Controllers, which are no widgets. The tests find all else by its name and drive it like a
+  // user.
   SaveController& saving() { return window_->controllers().saving; }
   DocumentController& documents() { return window_->controllers().documents; }
   EditController& edits() { return window_->controllers().edits; }
@@ -133,6 +160,20 @@ class WindowTest : public ::testing::Test {
     QApplication::sendEvent(&view(), &event);
   }
 
+  // Keeps the servo's samples from now on.
+  void startLog() {
+    feel().collect();
+    logged_.clear();
+    QObject::disconnect(logs_);
+    logs_ = QObject::connect(&feel(), &FeelController::collected, [this](const auto& samples) {
+      logged_.insert(logged_.end(), samples.begin(), samples.end());
+    });
+  }
+  const std::vector<ToolSample>& logged() {
+    feel().collect();
+    return logged_;
+  }
+
   // Share of the view's pixels that pass a test of red, green and blue.
   double share(const std::function<bool(int, int, int)>& test) {
     view().frames().refresh();
@@ -157,6 +198,10 @@ class WindowTest : public ::testing::Test {
 
   std::filesystem::path folder_;
   std::unique_ptr<MainWindow> window_;
+
+ private:
+  std::vector<ToolSample> logged_;
+  QMetaObject::Connection logs_;
 };
 
 } // namespace patina

@@ -1,5 +1,5 @@
-// What is seen and allowed follows from the window's state alone.
-#include "app/gui/window/window_state.h"
+// Visible and enabled parts follow from the window's state alone.
+#include "app/gui/state/window_state.h"
 
 #include <algorithm>
 #include <vector>
@@ -10,10 +10,11 @@ namespace patina {
 namespace {
 
 const std::vector<Panel> kPanels{
-    Panel::recovery, Panel::tool,   Panel::brush,    Panel::relief,     Panel::touch,
-    Panel::objects,  Panel::mesh,   Panel::device,   Panel::display,    Panel::paint,
-    Panel::forces,   Panel::energy, Panel::history,  Panel::messages,   Panel::timeline,
-    Panel::findings, Panel::scan,   Panel::recorder, Panel::calibration};
+    Panel::recovery,   Panel::tool,     Panel::measure,  Panel::brush,  Panel::relief,
+    Panel::touch,      Panel::objects,  Panel::mesh,     Panel::device, Panel::display,
+    Panel::colors,     Panel::paint,    Panel::forces,   Panel::energy, Panel::history,
+    Panel::messages,   Panel::timeline, Panel::findings, Panel::scan,   Panel::recorder,
+    Panel::calibration};
 const std::vector<Command> kCommands{Command::save, Command::save_as, Command::record,
                                      Command::undo, Command::redo,    Command::paint};
 
@@ -45,23 +46,23 @@ WindowState withScene() {
   return state;
 }
 
-TEST(WindowState, AnEmptyWindowShowsAndAllowsNothing) {
+TEST(WindowState, EmptyWindowShowsAndAllowsNothing) {
   EXPECT_EQ(thereIn({}), std::vector{Panel::messages});
   EXPECT_TRUE(enabledIn({}).empty());
   EXPECT_EQ(titleOf({}), QStringLiteral("Patina[*]"));
 }
 
-TEST(WindowState, APreviewShowsTheMeshAlone) {
+TEST(WindowState, PreviewShowsTheMeshAlone) {
   WindowState state;
   state.content = Content::preview;
-  state.tool = {Handling::paint, Tool::relief};
+  state.tool = {InteractionMode::paint, Tool::relief};
   state.relief = true;
   EXPECT_EQ(thereIn(state), (std::vector{Panel::mesh, Panel::display, Panel::messages}));
   EXPECT_EQ(tabsThere(state), (std::vector{Tab::object, Tab::show}));
   EXPECT_TRUE(enabledIn(state).empty());
 }
 
-TEST(WindowState, WhatStandsBehindAPreviewCanBeSavedAndIsNotPaintedOn) {
+TEST(WindowState, SceneBehindAPreviewCanBeSavedButNotPainted) {
   WindowState state = withScene();
   state.content = Content::preview;
   state.undoable = 1;
@@ -70,38 +71,57 @@ TEST(WindowState, WhatStandsBehindAPreviewCanBeSavedAndIsNotPaintedOn) {
   EXPECT_FALSE(isThere(Panel::history, state));
 }
 
-TEST(WindowState, ASceneShowsWhatEveryOneHas) {
-  EXPECT_EQ(thereIn(withScene()),
-            (std::vector{Panel::tool, Panel::touch, Panel::objects, Panel::mesh, Panel::device,
-                         Panel::display, Panel::forces, Panel::energy, Panel::messages}));
+TEST(WindowState, SceneShowsThePanelsOfEveryScene) {
+  EXPECT_EQ(
+      thereIn(withScene()),
+      (std::vector{Panel::tool, Panel::touch, Panel::objects, Panel::mesh, Panel::device,
+                   Panel::display, Panel::colors, Panel::forces, Panel::energy, Panel::messages}));
   EXPECT_EQ(shownIn(withScene()), (std::vector{Panel::touch, Panel::forces}));
   EXPECT_EQ(enabledIn(withScene()),
             (std::vector{Command::save, Command::save_as, Command::record, Command::paint}));
 }
 
-TEST(WindowState, TheBrushIsThereForToolsThatPaint) {
+TEST(WindowState, BrushIsShownForPaintingTools) {
   WindowState state = withScene();
   state.desk = Desk::paint;
-  for (const Handling handling : {Handling::navigate, Handling::feel, Handling::pick}) {
+  for (const InteractionMode handling :
+       {InteractionMode::navigate, InteractionMode::feel, InteractionMode::pick}) {
     state.tool = {handling, Tool::relief};
     EXPECT_FALSE(isThere(Panel::brush, state));
     EXPECT_FALSE(isThere(Panel::relief, state));
   }
-  state.tool = {Handling::paint, Tool::color};
+  state.tool = {InteractionMode::paint, Tool::color};
   EXPECT_TRUE(isThere(Panel::brush, state));
   EXPECT_FALSE(isThere(Panel::relief, state));
   state.tool.tool = Tool::relief;
   EXPECT_TRUE(isThere(Panel::relief, state));
 }
 
-TEST(WindowState, WhatTheSceneHasIsShownWhateverTheTool) {
+TEST(WindowState, MeasurementsAreShownForTheirToolsAndTheErrorMapsColoursForItsPath) {
+  WindowState state = withScene();
+  for (const InteractionMode handling : {InteractionMode::measure, InteractionMode::pin}) {
+    state.tool = {handling, {}};
+    for (const Desk desk : {Desk::feel, Desk::paint, Desk::analyse}) {
+      state.desk = desk;
+      EXPECT_TRUE(isThere(Panel::measure, state));
+    }
+  }
+  state.tool = {InteractionMode::press, {}};
+  EXPECT_FALSE(isThere(Panel::measure, state));
+  state.desk = Desk::align;
+  EXPECT_FALSE(isThere(Panel::colors, state));
+  state.path = true;
+  EXPECT_TRUE(isThere(Panel::colors, state));
+}
+
+TEST(WindowState, ScenePropertiesAreShownForEveryTool) {
   WindowState state = withScene();
   state.relief = state.paint = true;
   EXPECT_TRUE(isThere(Panel::relief, state));
   EXPECT_TRUE(isThere(Panel::paint, state));
 }
 
-TEST(WindowState, AHistoryIsThereWithItsFirstEditUndoneOrNot) {
+TEST(WindowState, HistoryIsShownWithItsFirstEditUndoneOrNot) {
   WindowState state = withScene();
   state.undoable = 1;
   EXPECT_TRUE(isThere(Panel::history, state));
@@ -113,19 +133,32 @@ TEST(WindowState, AHistoryIsThereWithItsFirstEditUndoneOrNot) {
   EXPECT_TRUE(isEnabled(Command::redo, state));
 }
 
-TEST(WindowState, WhatACrashLeftIsOfferedOnEveryDesk) {
+TEST(WindowState, RecoveryIsOfferedOnEveryDesk) {
   WindowState state;
   for (const DeskRow& row : deskRows()) {
     state.desk = row.desk;
-    state.left_behind.reset();
+    state.recoverable_scenes.reset();
     EXPECT_FALSE(isShown(Panel::recovery, state));
-    state.left_behind = "/some/where";
+    state.recoverable_scenes = "/some/where";
     EXPECT_TRUE(isShown(Panel::recovery, state));
   }
 }
 
-TEST(WindowState, AScanHasItsPagesOnceItIsOpen) {
-  if (!isBuilt(Desk::scan)) GTEST_SKIP() << "built without PATINA_ACQUISITION";
+TEST(WindowState, StorageProblemOfTheSceneIsShownOnEveryDesk) {
+  WindowState state = withScene();
+  state.open = true;
+  for (const DeskRow& row : deskRows()) {
+    state.desk = row.desk;
+    state.storage_problem.clear();
+    EXPECT_FALSE(isShown(Panel::storage, state));
+    state.storage_problem = QStringLiteral("the disk is full");
+    EXPECT_TRUE(isShown(Panel::storage, state));
+  }
+  state.open = false;
+  EXPECT_FALSE(isShown(Panel::storage, state));
+}
+
+TEST(WindowState, ScanHasItsPagesOnceOpen) {
   WindowState state;
   state.desk = Desk::scan;
   EXPECT_EQ(thereIn(state),
@@ -136,8 +169,7 @@ TEST(WindowState, AScanHasItsPagesOnceItIsOpen) {
   EXPECT_FALSE(isThere(Panel::timeline, state));
 }
 
-TEST(WindowState, AProfileIsThereOfWhatIsInFront) {
-  if (!isBuilt(Desk::texture)) GTEST_SKIP() << "built without PATINA_ACQUISITION";
+TEST(WindowState, ProfileShowsTheScanInFront) {
   WindowState state = withScene();
   state.desk = Desk::texture;
   state.tab = Tab::library;
@@ -152,11 +184,11 @@ TEST(WindowState, AProfileIsThereOfWhatIsInFront) {
   EXPECT_TRUE(isThere(Panel::profile, state));
 }
 
-TEST(WindowState, ATabWithNothingToShowLeavesItsPlaceToTheFirst) {
+TEST(WindowState, EmptyTabGivesWayToTheFirst) {
   WindowState state = withScene();
   state.desk = Desk::paint;
-  state.tool = {Handling::paint, Tool::color};
-  state.tab = Tab::device; // which Paint does not have
+  state.tool = {InteractionMode::paint, Tool::color};
+  state.tab = Tab::device; // Paint does not have it
   EXPECT_EQ(tabInFront(state), Tab::tool);
   EXPECT_TRUE(isShown(Panel::brush, state));
   state.page = Panel::history;
@@ -165,8 +197,8 @@ TEST(WindowState, ATabWithNothingToShowLeavesItsPlaceToTheFirst) {
   EXPECT_EQ(pageInFront(state), Panel::history);
 }
 
-TEST(WindowState, EveryToolIsAtHandOnSomeDeskAndStaysWhereItCan) {
-  const ToolChoice feel{Handling::feel, {}}, color{Handling::paint, Tool::color};
+TEST(WindowState, EveryToolIsOnADeskAndIsKeptIfPossible) {
+  const ToolChoice feel{InteractionMode::feel, {}}, color{InteractionMode::paint, Tool::color};
   for (const DeskRow& row : deskRows()) {
     EXPECT_TRUE(hasTool(row.desk, row.tool));
     const bool no_tool =
@@ -186,13 +218,13 @@ TEST(WindowState, EveryDeskShowsOnlyPanelsOfItsRow) {
       state.tab = tab;
       for (const Panel panel : shownIn(state)) {
         EXPECT_NE(std::find(row.panels.begin(), row.panels.end(), panel), row.panels.end());
-        EXPECT_TRUE(inDrawer(panel) || tabOf(panel) == tab);
+        EXPECT_TRUE(inBottomPanel(panel) || tabOf(panel) == tab);
       }
     }
   }
 }
 
-TEST(WindowState, TheTitleBeginsWithWhatIsOpen) {
+TEST(WindowState, TitleBeginsWithTheOpenName) {
   WindowState state = withScene();
   state.name = QStringLiteral("cup");
   EXPECT_EQ(titleOf(state), QStringLiteral("cup[*] – Patina"));

@@ -1,6 +1,7 @@
 #include "gui/x_hand.h"
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <thread>
@@ -26,18 +27,26 @@ xcb_connection_t* of(void* connection) {
   return static_cast<xcb_connection_t*>(connection);
 }
 
-// The key that makes a symbol without Shift; 0: none.
-xcb_keycode_t codeOf(xcb_connection_t* to, std::uint32_t keysym) {
+struct Key {
+  xcb_keycode_t code = 0;
+  bool shifted = false; // makes the symbol with Shift
+};
+
+// Returns the key that makes a symbol, one without Shift if there is one.
+Key keyOf(xcb_connection_t* to, std::uint32_t keysym) {
   const xcb_setup_t* setup = xcb_get_setup(to);
   const auto count = static_cast<std::uint8_t>(setup->max_keycode - setup->min_keycode + 1);
   const auto map = owned(xcb_get_keyboard_mapping_reply(
       to, xcb_get_keyboard_mapping(to, setup->min_keycode, count), nullptr));
-  if (!map) return 0;
-  const xcb_keysym_t* symbols = xcb_get_keyboard_mapping_keysyms(map.get());
-  for (int code = 0; code < count; ++code)
-    if (symbols[code * map->keysyms_per_keycode] == keysym)
-      return static_cast<xcb_keycode_t>(setup->min_keycode + code);
-  return 0;
+  if (map) {
+    const xcb_keysym_t* symbols = xcb_get_keyboard_mapping_keysyms(map.get());
+    for (const bool shifted : {false, true})
+      for (int code = 0; code < count; ++code)
+        if (symbols[code * map->keysyms_per_keycode + shifted] == keysym)
+          return {static_cast<xcb_keycode_t>(setup->min_keycode + code), shifted};
+  }
+  std::fprintf(stderr, "no key makes the symbol %#x\n", keysym);
+  std::abort();
 }
 
 bool managed(xcb_connection_t* to) {
@@ -70,7 +79,7 @@ void XHand::fake(std::uint8_t type, std::uint8_t detail, int x, int y) {
   const xcb_window_t root = xcb_setup_roots_iterator(xcb_get_setup(to)).data->root;
   xcb_test_fake_input(to, type, detail, XCB_CURRENT_TIME, root, static_cast<std::int16_t>(x),
                       static_cast<std::int16_t>(y), 0);
-  owned(xcb_get_input_focus_reply(to, xcb_get_input_focus(to), nullptr)); // all before it is done
+  owned(xcb_get_input_focus_reply(to, xcb_get_input_focus(to), nullptr)); // waits for all before
 }
 
 void XHand::moveTo(int x, int y) {
@@ -82,7 +91,11 @@ void XHand::button(int number, bool down) {
 }
 
 void XHand::key(std::uint32_t keysym, bool down) {
-  fake(down ? XCB_KEY_PRESS : XCB_KEY_RELEASE, codeOf(of(connection_), keysym), 0, 0);
+  constexpr std::uint32_t kShift = 0xffe1;
+  const Key made = keyOf(of(connection_), keysym);
+  if (made.shifted && down) key(kShift, true);
+  fake(down ? XCB_KEY_PRESS : XCB_KEY_RELEASE, made.code, 0, 0);
+  if (made.shifted && !down) key(kShift, false);
 }
 
 void XHand::mark(std::uint32_t window, std::uint32_t number) {

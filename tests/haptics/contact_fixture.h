@@ -6,14 +6,14 @@
 #include <memory>
 #include <random>
 
-#include "haptics/servo/snapshot.h"
+#include "haptics/law/snapshot.h"
 
 namespace patina {
 
 using Field = std::shared_ptr<const SurfaceField>;
 using Distance = std::function<double(const Vec3&)>;
 
-// `cells` a side, centred at the origin; even, so that a node lies there.
+// A grid of `cells` a side, centred at the origin; the number is even, so that a node lies there.
 inline Field cubeField(const Distance& phi, double voxel, int cells, double band = 8) {
   FieldGrid grid;
   grid.voxel = voxel;
@@ -38,7 +38,7 @@ inline Field sphereField(double radius = 0.03, int cells = 150) {
   return cubeField([=](const Vec3& p) { return sphereDistance(p, radius); },
                    2 * radius / (cells - 16), cells);
 }
-// A plate across z, 0.5 mm thick unless said; its rim is inside the grid.
+// A plate across z, 0.5 mm thick by default; its rim is inside the grid.
 inline Field plateField(double thickness = 0.5e-3, double voxel = 0.1e-3, int cells = 80) {
   const double side = 0.5 * voxel * cells - 12 * voxel;
   return cubeField([=](const Vec3& p) { return boxDistance(p, Vec3(side, side, 0.5 * thickness)); },
@@ -61,7 +61,8 @@ inline Scene withFriction(Scene scene, double fixed, double sliding, double gain
   return scene;
 }
 
-// Ticks of 1 ms along a straight line at no more than `step` metres each; the last tick's record.
+// Runs ticks of 1 ms along a straight line at no more than `step` metres each; returns the last
+// one's contact.
 inline Contact glide(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& to,
                      double step = 0.2e-3, double dt = 1e-3) {
   const Vec3 from = memory.tip.last ? *memory.tip.last : to;
@@ -73,7 +74,7 @@ inline Contact glide(const HapticSnapshot& snapshot, ContactMemory& memory, cons
   return contact;
 }
 
-// A single tick without history.
+// Runs a single tick without history.
 inline Contact touchOnce(const HapticSnapshot& snapshot, const Vec3& tip) {
   ContactMemory memory;
   return tick(snapshot, memory, tip, 1e-3);

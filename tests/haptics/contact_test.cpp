@@ -19,19 +19,19 @@ TEST(Contact, FlipsAtThePlane) {
   }
 }
 
-// T-K03: a step over a thin plate ends on the side where it came in.
-TEST(Contact, AStepOverAThinPlateStaysInFrontOfIt) {
+// T-K03: a step over a thin plate ends on the side of entry.
+TEST(Contact, StaysInFrontOfAThinPlateInOneStep) {
   const auto snapshot = compileStages(sceneOf(500), plateField());
   ContactMemory memory;
   const Vec3 tip(0.3e-3, 0.2e-3, 0.75e-3);
   EXPECT_FALSE(tick(*snapshot, memory, tip, 1e-3).touching);
   const Contact after = tick(*snapshot, memory, tip - Vec3(0, 0, 2e-3), 1e-3);
   ASSERT_TRUE(after.touching);
-  EXPECT_LT((after.candidate - Vec3(0.3e-3, 0.2e-3, 0.25e-3)).norm(), 1e-7);
+  EXPECT_LT((after.frictionless_point - Vec3(0.3e-3, 0.2e-3, 0.25e-3)).norm(), 1e-7);
   EXPECT_LT((after.normal - Vec3::UnitZ()).norm(), 1e-5);
 }
 
-TEST(Contact, SlidesAlongAThinPlateAndLetsGoInFrontOfIt) {
+TEST(Contact, SlidesAlongAThinPlateAndDetachesInFront) {
   const auto snapshot = compileStages(sceneOf(500), plateField());
   ContactMemory memory;
   tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
@@ -44,7 +44,7 @@ TEST(Contact, SlidesAlongAThinPlateAndLetsGoInFrontOfIt) {
   EXPECT_EQ(back.force, Vec3::Zero().eval());
 }
 
-TEST(Contact, ASlowPushThroughAThinPlateStaysInFrontOfItToo) {
+TEST(Contact, StaysInFrontOfAThinPlateInASlowPush) {
   const auto snapshot = compileStages(sceneOf(500), plateField());
   ContactMemory memory;
   tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
@@ -57,7 +57,7 @@ TEST(Contact, ASlowPushThroughAThinPlateStaysInFrontOfItToo) {
   }
 }
 
-TEST(Contact, GoesAroundTheRim) {
+TEST(Contact, PassesAroundAnEdge) {
   const auto snapshot = compileStages(sceneOf(500), plateField());
   ContactMemory memory;
   tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
@@ -82,7 +82,7 @@ TEST(Contact, PassesOverARoundBody) {
   }
 }
 
-// What is known to be free is not looked at again.
+// The contact stage skips the field inside a region that an earlier sample showed to be free.
 TEST(Contact, FreeMotionTakesOneSampleOrNone) {
   const auto snapshot = compileStages(sceneOf(500), plateField());
   ContactMemory memory;
@@ -92,7 +92,7 @@ TEST(Contact, FreeMotionTakesOneSampleOrNone) {
     EXPECT_LE(samples, 1);
     looks += samples;
   }
-  EXPECT_LT(looks, 40); // of 170 ticks
+  EXPECT_LT(looks, 40); // 170 ticks
 }
 
 // T-K07.
@@ -126,7 +126,7 @@ TEST(Contact, TipRadiusIsAnIsoValue) {
 }
 
 // MATH 2.8, a field deeper than the band.
-TEST(Contact, DeeperThanTheBandForceGoesOnContinuously) {
+TEST(Contact, ForceIsContinuousBeyondTheBand) {
   const Field sphere = sphereField();
   for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
     const auto snapshot = compileStages(sceneOf(500, sampler), sphere);
@@ -138,7 +138,7 @@ TEST(Contact, DeeperThanTheBandForceGoesOnContinuously) {
       Vec3 last = Vec3::Zero();
       for (double r = 0.03; r > 6e-3; r -= 0.02e-3) {
         const Contact contact = tick(*snapshot, memory, r * n, 1e-3);
-        // The magnitude is exact along any direction that is; coarse cells are 3.6 mm wide.
+        // The magnitude is exact along any valid direction; coarse cells are 3.6 mm wide.
         const double tolerance = r > 0.02 ? 2e-3 : r > 0.01 ? 0.02 : 0.08;
         EXPECT_LT((contact.force - 500 * (0.03 - r) * n).norm(),
                   tolerance * 500 * (0.03 - r) + 1e-3);
@@ -150,8 +150,9 @@ TEST(Contact, DeeperThanTheBandForceGoesOnContinuously) {
   }
 }
 
-// Past the middle of a solid body the tip is still inside: no force may turn around or vanish.
-TEST(Contact, PressingThroughTheMiddleOfASolidKeepsTheForce) {
+// Past the centre of a solid body the tip is still inside: the force must neither reverse nor
+// vanish.
+TEST(Contact, KeepsTheForcePastTheMiddleOfASolid) {
   Scene scene = sceneOf(500);
   scene.haptics.force_limit = 3.3;
   const Field sphere = sphereField();
@@ -204,7 +205,7 @@ TEST(Contact, BadTipsAreCountedAndForceless) {
     EXPECT_FALSE(contact.touching);
     EXPECT_EQ(contact.force, Vec3::Zero().eval());
   }
-  // What was known before is still known: no fault, no velocity from nowhere.
+  // The contact state is kept: there is no fault and no spurious velocity.
   const Contact after = tick(*snapshot, memory, Vec3(0, 0, -1e-3), 1e-3);
   EXPECT_NEAR(after.force.z(), 0.5, 1e-6);
   EXPECT_FALSE(after.fault);

@@ -1,15 +1,15 @@
 #include <gtest/gtest.h>
 
-#include "haptics/contact/proxy_stage.h"
 #include "haptics/contact/pull_back.h"
 #include "haptics/contact_fixture.h"
+#include "haptics/law/proxy_stage.h"
 
 namespace patina {
 namespace {
 
-// Pressed 2.5 to 5 mm deep and slid across the bisector of a box's edge, at 7 um a tick, most of it
-// deeper than the band: the contact point stays on the face where it is, however near the other.
-TEST(Crease, SlidingAcrossAnEdgeDeeperThanTheBandIsNoFault) {
+// The tip is pressed 2.5 to 5 mm deep and slid across the bisector of a box's edge, at 7 um a tick,
+// mostly deeper than the band: the contact point stays on its face, however near the other one is.
+TEST(Crease, SlideAcrossAnEdgeBeyondTheBandIsNoFault) {
   const Vec3 half(0.03, 0.025, 0.02);
   const Field box = cubeField([=](const Vec3& p) { return boxDistance(p, half); },
                               0.06 / (150 - 16), 152); // band 8
@@ -31,14 +31,14 @@ TEST(Crease, SlidingAcrossAnEdgeDeeperThanTheBandIsNoFault) {
         ASSERT_LT((contact.force - last).norm(), 1.2e-3 * stiffness) << depth << ' ' << along;
         last = contact.force;
       }
-      EXPECT_GT(contact.normal.x(), 0.99); // of the face where it came in
+      EXPECT_GT(contact.normal.x(), 0.99); // the face where it came in
     }
   }
 }
 
-// P04 in the inner corner of a cube without one octant, where walls let c go far in one tick: tips
-// that jump about inside at up to 1 m/s, much deeper than the band.
-TEST(Crease, TheContactPointGoesNoFartherInATickThanItMay) {
+// P04 in the inner corner of a cube without one octant, where walls let the contact point move far
+// in one tick: tips jump about inside at up to 1 m/s, much deeper than the band.
+TEST(Crease, ContactPointMovesNoFartherATickThanItsLimit) {
   constexpr double kVoxel = 1e-3, kOwn = kSnapSides * 100 * kVoxel; // [m], [m/s]
   const Field corner = cubeField(
       [](const Vec3& p) {
@@ -66,7 +66,8 @@ TEST(Crease, TheContactPointGoesNoFartherInATickThanItMay) {
       const double step = (tip - last.tip).norm(), ball = step + kOwn * 1e-3;
       if (now.touching && last.touching) {
         ++touching;
-        farthest = std::max(farthest, (now.candidate - last.candidate).norm() / ball);
+        farthest =
+            std::max(farthest, (now.frictionless_point - last.frictionless_point).norm() / ball);
         excess = std::max(excess, (now.force - last.force).norm() - 500 * (step + ball));
       }
       last = now;
@@ -79,8 +80,8 @@ TEST(Crease, TheContactPointGoesNoFartherInATickThanItMay) {
   EXPECT_LE(excess, 0.01);
 }
 
-// J of the closest point, which such a crease holds too.
-TEST(Crease, WhatIsPaintedDoesNotChangeAcrossAFlatOne) {
+// J of the closest point, which such a crease constrains too.
+TEST(Crease, PaintDoesNotChangeAcrossAFlatOne) {
   const Field field = planeField();
   const FieldSampler sampler(*field, Sampler::high);
   for (const double lean : {0.02, 0.05, 0.3}) {
@@ -93,7 +94,7 @@ TEST(Crease, WhatIsPaintedDoesNotChangeAcrossAFlatOne) {
     contact.wall[0] = {Vec3(std::sin(lean), 0, std::cos(lean)), load};
     contact.wall[1] = {Vec3(-std::sin(lean), 0, std::cos(lean)), load};
     EXPECT_LT((pulledBack(sampler, contact, Vec3(3, 2, 0)) - Vec3(0, 2, 0)).norm(), 1e-12);
-    contact.jacobian.reset(); // that of the two
+    contact.jacobian.reset(); // drops the Jacobian of the two walls
     contact.walls = 1;
     contact.wall[0] = {contact.normal, 1e-3};
     EXPECT_LT((pulledBack(sampler, contact, Vec3(3, 2, 0)) - Vec3(3, 2, 0)).norm(), 1e-6);

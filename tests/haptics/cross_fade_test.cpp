@@ -60,14 +60,14 @@ std::vector<Edit> edits() {
 TEST(CrossFade, NoEditStepsTheForceOfAStillTip) {
   for (const Edit& edit : edits()) {
     CrossFade law;
-    law.turnTo(edit.from.get());
-    // Pulled aside before it rests, so that friction holds a force as well.
+    law.fadeTo(edit.from.get());
+    // The tip is moved sideways before it rests, so that friction holds a force as well.
     Vec3 tip = edit.tip;
     for (int i = 0; i < 20; ++i) law.tick(tip += Vec3(2e-5, 0, -1e-5), 1e-3);
     for (int i = 0; law.fading() && i < 500; ++i) law.tick(tip, 1e-3);
     Vec3 last = law.tick(tip, 1e-3).force;
     law.tick(tip, 1e-3);
-    law.turnTo(edit.to.get());
+    law.fadeTo(edit.to.get());
     EXPECT_TRUE(law.fading());
     int ticks = 0;
     for (; law.fading() && ticks < 1000; ++ticks) {
@@ -77,32 +77,32 @@ TEST(CrossFade, NoEditStepsTheForceOfAStillTip) {
       last = contact.force;
     }
     EXPECT_LT(ticks, 150) << edit.what;
-    EXPECT_EQ(law.felt(), edit.to.get());
+    EXPECT_EQ(law.active(), edit.to.get());
     ContactMemory fresh;
     const Vec3 wanted = tick(*edit.to, fresh, tip, 1e-3).force;
     const Vec3 after = law.tick(tip, 1e-3).force;
     EXPECT_LE((after - last).norm(), kAllowed) << edit.what;
-    // Friction remembers where it stuck, which a fresh tip has not done.
+    // Friction remembers its stuck point, which a fresh tip does not have.
     EXPECT_NEAR(after.norm(), wanted.norm(), 0.15 * wanted.norm() + 1e-12) << edit.what;
   }
 }
 
-TEST(CrossFade, LawsThatAgreeAreExchangedAtOnce) {
+TEST(CrossFade, ExchangesEqualLawsAtOnce) {
   const Field sphere = sphereField();
   const auto a = compileStages(sceneOf(500), sphere), b = compileStages(sceneOf(900), sphere);
   CrossFade law;
-  law.turnTo(a.get());
+  law.fadeTo(a.get());
   law.tick(Vec3(0, 0, 0.05), 1e-3);
-  law.turnTo(b.get());
+  law.fadeTo(b.get());
   law.tick(Vec3(0, 0, 0.05), 1e-3);
   EXPECT_FALSE(law.fading());
-  EXPECT_EQ(law.felt(), b.get());
+  EXPECT_EQ(law.active(), b.get());
 }
 
-TEST(CrossFade, WithoutAnEditItIsTheTickItself) {
+TEST(CrossFade, EqualsTheTickWithoutAnEdit) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), sphereField());
   CrossFade law;
-  law.turnTo(snapshot.get());
+  law.fadeTo(snapshot.get());
   law.tick(Vec3(0, 0, 0.0305), 1e-3); // out of contact: at once
   EXPECT_FALSE(law.fading());
   ContactMemory memory;
@@ -114,21 +114,20 @@ TEST(CrossFade, WithoutAnEditItIsTheTickItself) {
   }
 }
 
-TEST(CrossFade, WithNothingToFeelThereIsNoForce) {
+TEST(CrossFade, HasNoForceWithoutASurface) {
   CrossFade law;
   EXPECT_EQ(law.tick(Vec3(1, 2, 3), 1e-3).force, Vec3(0, 0, 0));
-  EXPECT_EQ(law.field(), nullptr);
 }
 
-// A fault outlives an edit: no edit is a way around the fade to zero and back.
-TEST(CrossFade, AFaultGoesOnThroughAnEdit) {
+// A fault outlasts an edit: no edit bypasses the fade to zero and back.
+TEST(CrossFade, KeepsAFaultThroughAnEdit) {
   const Field sphere = sphereField();
   const auto a = compileStages(sceneOf(2000), sphere), b = compileStages(sceneOf(1900), sphere);
   CrossFade law;
-  law.turnTo(a.get());
+  law.fadeTo(a.get());
   law.tick(Vec3(0, 0, 0.0301), 1e-3);
-  EXPECT_TRUE(law.tick(Vec3(0, 0, 0.022), 1e-3).fault); // 16 N at once
-  law.turnTo(b.get());
+  EXPECT_TRUE(law.tick(Vec3(0, 0, 0.022), 1e-3).fault); // 16 N in one tick
+  law.fadeTo(b.get());
   double last = 0;
   for (int i = 1; i < 300; ++i) {
     const double force = law.tick(Vec3(0, 0, 0.022), 1e-3).force.norm();
@@ -136,11 +135,11 @@ TEST(CrossFade, AFaultGoesOnThroughAnEdit) {
     ASSERT_LT(std::abs(force - last), 0.1) << i;
     last = force;
   }
-  EXPECT_NEAR(last, 1900 * 8e-3, 0.01); // a solid is never left without force
+  EXPECT_NEAR(last, 1900 * 8e-3, 0.01); // a tip in a solid always has a force
 }
 
 // Edits at 30 Hz between 300 and 700 N/m under a mass in contact (limit 2b/T = 1000 N/m): it comes
-// to rest, as it does without edits; a limit of the force's own rate would shake it (F13).
+// to rest as without edits; a rate limit of the force would shake it (F13).
 TEST(CrossFade, EditsDoNotShakeAStableContact) {
   const Field plane = planeField();
   const auto soft = compileStages(sceneOf(300), plane), stiff = compileStages(sceneOf(700), plane);
@@ -150,12 +149,12 @@ TEST(CrossFade, EditsDoNotShakeAStableContact) {
   spec.hand_force = Vec3(0, 0, -1);
   SimulatedDevice device(spec);
   CrossFade law;
-  law.turnTo(soft.get());
+  law.fadeTo(soft.get());
   Vec3 force = Vec3::Zero(), tip = spec.position;
   double deepest = 0, fastest = 0;
   for (int i = 0; i < 12000; ++i) {
     if (i < 3000 && i % 33 == 0 && !law.fading())
-      law.turnTo(law.felt() == soft.get() ? stiff.get() : soft.get());
+      law.fadeTo(law.active() == soft.get() ? stiff.get() : soft.get());
     const Vec3 last = tip;
     tip = device.exchange(force, 1e-3).position;
     force = law.tick(tip, 1e-3).force;

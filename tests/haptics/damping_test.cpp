@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/stages/spring_stage.h"
+#include "haptics/law/spring_stage.h"
 
 namespace patina {
 namespace {
@@ -42,9 +42,9 @@ TEST(Damping, DoesNotChangeTheStaticForce) {
   EXPECT_EQ(first.force, second.force);
 }
 
-// Against walls that only push, however nearly two of them are one: at most B |v|, never with the
-// motion, and no pull on any of them.
-TEST(Damping, OfSeveralWallsIsBoundedTakesEnergyAndDoesNotPull) {
+// The walls only push, and some are nearly parallel: the damper is at most B |v|, never acts with
+// the motion, and pulls on no wall.
+TEST(Damping, IsBoundedDissipativeAndPushOnlyAtSeveralWalls) {
   const double damping = 2, stiffness = 500;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -60,15 +60,15 @@ TEST(Damping, OfSeveralWallsIsBoundedTakesEnergyAndDoesNotPull) {
     for (int k = 0; k < contact.walls; ++k) {
       const Vec3 normal = (middle + spread * randomDirection(random)).normalized();
       contact.wall[static_cast<std::size_t>(k)] = {normal, 2e-3 * unit(random)};
-      way += contact.wall[static_cast<std::size_t>(k)].load * normal;
+      way += contact.wall[static_cast<std::size_t>(k)].multiplier * normal;
     }
     contact.normal = way.normalized();
     const Vec3 spring = contact.force = stiffness * way;
-    dampWalls(contact, damping, false);
+    dampConstrainedMotion(contact, damping, false);
     const Vec3 damper = contact.force - spring;
     ASSERT_LE(damper.norm(), damping * 0.2 * (1 + 1e-6)) << i;
     ASSERT_LE(damper.dot(contact.velocity), 1e-9) << i;
-    // Whatever goes into no wall is not hindered by the force, nor drawn towards them.
+    // The force neither hinders nor attracts a motion that enters no wall.
     for (int k = 0; k < 20; ++k) {
       const Vec3 free = randomDirection(random);
       bool goes = true;
@@ -81,8 +81,8 @@ TEST(Damping, OfSeveralWallsIsBoundedTakesEnergyAndDoesNotPull) {
   }
 }
 
-// Across two walls at right angles each has its own share.
-TEST(Damping, InACornerEachWallIsDampedByItself) {
+// Each of two walls at right angles has its own share.
+TEST(Damping, DampsEachWallOfACornerSeparately) {
   Contact contact;
   contact.touching = true;
   contact.stiffness = 500;
@@ -92,11 +92,11 @@ TEST(Damping, InACornerEachWallIsDampedByItself) {
   contact.wall[1] = {Vec3::UnitZ(), 1e-3};
   contact.normal = Vec3(2, 0, 1).normalized();
   contact.force = Vec3(1, 0, 0.5);
-  dampWalls(contact, 2, false);
+  dampConstrainedMotion(contact, 2, false);
   EXPECT_LT((contact.force - Vec3(1.2, 0, 0)).norm(), 1e-12); // it leaves the floor too fast
 }
 
-TEST(Damping, SeesTheBackwardDifference) {
+TEST(Damping, UsesTheBackwardDifference) {
   const auto snapshot = compileStages(sceneOf(500), planeField());
   ContactMemory memory;
   for (int i = 0; i < 3; ++i) {
@@ -105,7 +105,7 @@ TEST(Damping, SeesTheBackwardDifference) {
   }
 }
 
-TEST(Damping, ACutoffFiltersTheVelocityThatItSees) {
+TEST(Damping, CutoffFiltersItsVelocity) {
   Scene scene = sceneOf(500);
   scene.haptics.damping = 1;
   scene.haptics.damping_cutoff = 200;

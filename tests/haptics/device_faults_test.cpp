@@ -1,13 +1,13 @@
-// Everything that can go wrong between servo and motors, free, in contact and in a stroke: the
-// force at the wire, in simulated time.
+// All faults between servo and motors, free, in contact and in a stroke: the force at the wire, in
+// simulated time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <functional>
 #include <limits>
 
-#include "haptics/contact/plane.h"
 #include "haptics/falcon_support.h"
+#include "haptics/law/plane.h"
 #include "haptics/servo/cross_fade.h"
 #include "support/constants.h"
 #include "support/longer.h"
@@ -22,14 +22,14 @@ const char* name(Situation situation) {
                                            : "stroke";
 }
 
-// The servo's loop, as ServoLoop has it, on the plane z = 0 and an emulated Falcon.
-class FeltFalcon {
+// The servo's loop like that of ServoLoop, on the plane z = 0 and an emulated Falcon.
+class HapticFalcon {
  public:
-  explicit FeltFalcon(Situation situation, const FalconBenchSpec& spec = bench())
+  explicit HapticFalcon(Situation situation, const FalconEmulatorSpec& spec = bench())
       : rig(spec), situation_(situation), snapshot_(plane()) {
-    law_.turnTo(snapshot_.get());
+    law_.fadeTo(snapshot_.get());
   }
-  static FalconBenchSpec bench() {
+  static FalconEmulatorSpec bench() {
     return {.body = {.mass = 0.25, .damping = 12, .spring = 300, .friction = 0}};
   }
 
@@ -49,19 +49,19 @@ class FeltFalcon {
     const double depth = situation_ == Situation::free ? 0.01 : -0.012;
     const double along = situation_ == Situation::stroke ? 0.02 * std::sin(2 * t) : 0;
     rig.bench.rest = Vec3(along, 0, depth);
-    if (!broken.window) rig.notes->looked_at = t;
+    if (!broken.window) rig.notes->heartbeat_at = t;
     const DeviceState& state = rig.tick(broken.command.value_or(force_), !broken.servo);
     if (broken.servo) return;
-    status = judge(state);
+    status = effectiveStatus(state);
     if (status != DeviceStatus::ok) {
       EXPECT_TRUE(holds(status)) << text(status);
       force_.setZero();
-      return law_.lose();
+      return law_.resetContact();
     }
     const Contact contact = law_.tick(state.position, kPeriod);
     force_ = contact.force;
     ++felt;
-    // What is felt was measured just now, or says how long ago.
+    // A rendered state was measured just now, or its age is reported.
     EXPECT_LT((state.position - rig.bench.handle()).norm(), 1e-3 + 0.5 * (state.age + 2e-3));
   }
   void run(double seconds) {
@@ -76,7 +76,7 @@ class FeltFalcon {
   }
 
   FalconRig rig;
-  DeviceStatus status = DeviceStatus::away;
+  DeviceStatus status = DeviceStatus::reconnecting;
   std::uint64_t felt = 0; // ticks
 
  private:
@@ -88,9 +88,9 @@ class FeltFalcon {
 
 struct Fault {
   const char* name;
-  std::function<void(FeltFalcon&)> begin;
-  std::function<void(FeltFalcon&)> end;
-  double visible = 0; // [s] after the tick in which it begins, at the latest
+  std::function<void(HapticFalcon&)> begin;
+  std::function<void(HapticFalcon&)> end;
+  double visible = 0; // [s] latest delay after the tick in which it begins
   double lasts = 0.05;
   bool resumes = true;
   bool passes = true; // frames still get through while it lasts
@@ -98,15 +98,15 @@ struct Fault {
 
 Fault ofAnswers(const char* name, WireFault kind, double visible, int frames = 1) {
   return {name,
-          [=](FeltFalcon& f) {
+          [=](HapticFalcon& f) {
             f.rig.bench.faults = {kind, frames};
           },
-          [](FeltFalcon&) {}, visible};
+          [](HapticFalcon&) {}, visible};
 }
 
 std::vector<Fault> faults() {
-  constexpr double kWire = 0.3e-3, kOverdue = 2.3e-3; // an answer; one that does not come
-  const auto nothing = [](FeltFalcon&) {};
+  constexpr double kWire = 0.3e-3, kOverdue = 2.3e-3; // time of an answer; time of a missing one
+  const auto nothing = [](HapticFalcon&) {};
   std::vector<Fault> list{
       ofAnswers("STALL", WireFault::stall, kWire),
       ofAnswers("lost", WireFault::mute, kOverdue),
@@ -124,51 +124,51 @@ std::vector<Fault> faults() {
       ofAnswers("12 stalls", WireFault::stall, kWire, 12),
   };
   list.back().passes = false;
-  list.push_back({"unplugged", [](FeltFalcon& f) { f.rig.bench.unplug(); },
-                  [](FeltFalcon& f) { f.rig.bench.attach(); }, 0, 0.3, true, false});
-  list.push_back({"servo stops", [](FeltFalcon& f) { f.broken.servo = true; },
-                  [](FeltFalcon& f) { f.broken.servo = false; }, 3e-3});
-  list.push_back({"window hangs", [](FeltFalcon& f) { f.broken.window = true; },
-                  [](FeltFalcon& f) { f.broken.window = false; }, 0.5, 10});
-  list.push_back({"NaN asked for", [](FeltFalcon& f) { f.broken.command = Vec3(0, kNan, 0); },
-                  [](FeltFalcon& f) { f.broken.command.reset(); }});
+  list.push_back({"unplugged", [](HapticFalcon& f) { f.rig.bench.unplug(); },
+                  [](HapticFalcon& f) { f.rig.bench.attach(); }, 0, 0.3, true, false});
+  list.push_back({"servo stops", [](HapticFalcon& f) { f.broken.servo = true; },
+                  [](HapticFalcon& f) { f.broken.servo = false; }, 3e-3});
+  list.push_back({"window hangs", [](HapticFalcon& f) { f.broken.window = true; },
+                  [](HapticFalcon& f) { f.broken.window = false; }, 0.5, 10});
+  list.push_back({"NaN asked for", [](HapticFalcon& f) { f.broken.command = Vec3(0, kNan, 0); },
+                  [](HapticFalcon& f) { f.broken.command.reset(); }});
   list.push_back({"infinity asked for",
-                  [](FeltFalcon& f) { f.broken.command = Vec3(HUGE_VAL, 0, 0); },
-                  [](FeltFalcon& f) { f.broken.command.reset(); }});
-  list.push_back({"firmware lost and refused", [](FeltFalcon& f) { f.rig.bench.loseFirmware(); },
+                  [](HapticFalcon& f) { f.broken.command = Vec3(HUGE_VAL, 0, 0); },
+                  [](HapticFalcon& f) { f.broken.command.reset(); }});
+  list.push_back({"firmware lost and refused", [](HapticFalcon& f) { f.rig.bench.loseFirmware(); },
                   nothing, kOverdue, 3, false, false});
   return list;
 }
 
-// The wire from the moment when the fault can be seen: no force 5 ms later, until it is over.
-TEST(DeviceFaults, EachTakesTheForceFromTheWireWithinFiveMillisecondsAndItComesBackByTheRamp) {
+// Checks the wire from the moment when the fault is visible: no force 5 ms later, until it is over.
+TEST(DeviceFaults, RemoveTheForceWithinFiveMillisecondsAndRestoreItByTheRamp) {
   double worst = 0;
   const std::vector<Fault> all = faults();
   EXPECT_GE(all.size(), 15U);
   for (const Fault& fault : all)
     for (const Situation situation : {Situation::free, Situation::contact, Situation::stroke}) {
       SCOPED_TRACE(std::string(fault.name) + ", " + name(situation));
-      FeltFalcon f(situation);
+      HapticFalcon f(situation);
       ASSERT_TRUE(f.runUntilFelt(1));
       f.run(0.7);
       const bool pushes = situation != Situation::free;
       ASSERT_EQ(f.rig.sent.back().force(), pushes);
-      const std::uint64_t felt_before = f.felt;
+      const std::uint64_t haptic_before = f.felt;
       const std::uint64_t faults_before = f.rig.notes->faults;
 
       const std::size_t from = f.rig.sent.size();
       fault.begin(f);
-      f.tick(); // it may be seen from the end of this tick's frame on
+      f.tick(); // visible from the end of this tick's frame on
       const double seen = f.rig.sent.size() > from ? f.rig.sent[from].t : f.rig.clock->now();
       const double visible = seen + fault.visible;
       bool shown = false;
       for (const double until = f.rig.clock->now() + fault.lasts; f.rig.clock->now() < until;) {
         f.tick();
         if (f.rig.clock->now() < visible + 0.1)
-          shown = shown || f.rig.notes->hold != Hold::none || f.rig.notes->gain < 1 ||
+          shown = shown || f.rig.notes->inhibit != ForceInhibit::none || f.rig.notes->gain < 1 ||
                   f.rig.notes->status != DeviceStatus::ok;
       }
-      EXPECT_TRUE(shown) << "nobody is told";
+      EXPECT_TRUE(shown) << "no listener is notified";
       fault.end(f);
       const double ended = f.rig.clock->now();
 
@@ -184,8 +184,8 @@ TEST(DeviceFaults, EachTakesTheForceFromTheWireWithinFiveMillisecondsAndItComesB
         worst = std::max(worst, last_force - visible);
         EXPECT_LE(last_force, visible + 5e-3);
       }
-      // The device keeps the last force that it was told: silence is no answer to a fault, but
-      // where nothing gets through.
+      // The device keeps the last force that it received: silence answers a fault only if nothing
+      // gets through.
       if (fault.passes) {
         ASSERT_GT(first_none, 0) << "no frame without force";
         EXPECT_LE(first_none, visible + 5e-3);
@@ -198,20 +198,20 @@ TEST(DeviceFaults, EachTakesTheForceFromTheWireWithinFiveMillisecondsAndItComesB
       }
       ASSERT_TRUE(f.runUntilFelt(2.3)) << f.rig.notes->cause();
       EXPECT_LE(f.rig.clock->now() - ended, 2.25);
-      // From the last frame without force to all of it takes the ramp.
+      // The force needs the time of the ramp from the last frame without force to its full value.
       EXPECT_GE(f.rig.clock->now() - first_none, 0.25);
       f.run(0.3);
       EXPECT_EQ(f.rig.sent.back().force(), pushes);
-      EXPECT_GT(f.felt, felt_before + 200); // the stroke goes on
+      EXPECT_GT(f.felt, haptic_before + 200); // the stroke goes on
       EXPECT_GE(f.rig.notes->faults.load(), faults_before);
     }
   std::printf("%zu faults in 3 situations: at most %.2f ms of force after it can be seen\n",
               all.size(), 1e3 * std::max(worst, 0.0));
 }
 
-TEST(DeviceFaults, WhatEditsHangDoesNotReachTheHand) {
-  // The servo holds what it was given last; nobody publishes for ten seconds.
-  FeltFalcon f(Situation::contact);
+TEST(DeviceFaults, HungEditsDoNotReachTheHand) {
+  // The servo keeps the last snapshot; no thread publishes for ten seconds.
+  HapticFalcon f(Situation::contact);
   ASSERT_TRUE(f.runUntilFelt(1));
   f.run(0.5);
   const std::uint64_t before = f.felt;
@@ -221,8 +221,8 @@ TEST(DeviceFaults, WhatEditsHangDoesNotReachTheHand) {
   for (std::size_t i = from; i < f.rig.sent.size(); ++i) ASSERT_TRUE(f.rig.sent[i].force());
 }
 
-TEST(DeviceFaults, AHundredUnpluggingsAreEachOverWithinTwoSecondsByTheRamp) {
-  FeltFalcon f(Situation::contact);
+TEST(DeviceFaults, EndWithinTwoSecondsAfterEachOfAHundredUnpluggings) {
+  HapticFalcon f(Situation::contact);
   ASSERT_TRUE(f.runUntilFelt(1));
   std::mt19937 random(11);
   std::uniform_real_distribution<double> away(0.01, 1.5);
@@ -244,14 +244,14 @@ TEST(DeviceFaults, AHundredUnpluggingsAreEachOverWithinTwoSecondsByTheRamp) {
     shortest_ramp = std::min(shortest_ramp, whole - first->t);
   }
   EXPECT_LE(longest, 2);
-  EXPECT_GE(shortest_ramp, 0.249); // 250 turns, the first of which sends a force already
-  EXPECT_EQ(f.rig.notes->openings, 101U);
+  EXPECT_GE(shortest_ramp, 0.249); // 250 exchanges, the first of which already sends a force
+  EXPECT_EQ(f.rig.notes->connect_count, 101U);
   std::printf("resumed in %.2f s at most, ramp %.3f s at least\n", longest, shortest_ramp);
 }
 
-// An answer too many while nobody listens: found out, never taken for the newest for long.
-TEST(DeviceFaults, TwentySecondsOfOneFaultInAHundredFramesNeverFeelAnOldPlace) {
-  FeltFalcon f(Situation::stroke);
+// A surplus answer that no read awaits is detected, and is not taken for the newest for long.
+TEST(DeviceFaults, NeverRenderAnOldPositionInTwentySecondsOfFaults) {
+  HapticFalcon f(Situation::stroke);
   ASSERT_TRUE(f.runUntilFelt(1));
   std::mt19937 random(12);
   const long ticks = longer(20000);
@@ -264,10 +264,10 @@ TEST(DeviceFaults, TwentySecondsOfOneFaultInAHundredFramesNeverFeelAnOldPlace) {
       f.rig.bench.faults = {kKinds[random() % std::size(kKinds)], 1};
       ++injected;
     }
-    f.tick(); // which holds each place against the handle's
+    f.tick(); // it compares each position with the handle's
   }
   EXPECT_GE(f.rig.notes->faults.load(), injected);
-  EXPECT_EQ(f.rig.notes->openings, 1U) << "a frame that is lost is no reason to begin anew";
+  EXPECT_EQ(f.rig.notes->connect_count, 1U) << "a lost frame must not restart the connection";
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "haptics/devices/device_mount.h"
+#include "haptics/device/device_mount.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDyadicPeriod = 0x1p-10;
 
-// Says what the test tells it to, and keeps what it was sent.
+// Plays the states that the test sets, and keeps the forces that it received.
 struct Script {
   DeviceState state;
   Vec3 force = Vec3::Zero();
@@ -47,7 +47,7 @@ MountSpec turned(double scale) {
   return spec;
 }
 
-TEST(DeviceMount, ANeutralOneChangesNoBit) {
+TEST(DeviceMount, ChangesNoBitIfNeutral) {
   Mounted mounted;
   mounted.script.state.velocity = Vec3(0.1, 0.2, 0.3);
   mounted.script.state.orientation = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5);
@@ -70,7 +70,7 @@ TEST(DeviceMount, TurnsScalesAndPlacesTheTip) {
   EXPECT_LT((state.orientation * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
 }
 
-// F_d v_d = F v: no surface gives more through a mount than it has.
+// F_d v_d = F v: a surface gives no extra energy through a mount.
 TEST(DeviceMount, ConservesPowerAtEveryScale) {
   for (const double scale : {0.125, 1.0, 8.0}) {
     MountSpec spec = turned(scale);
@@ -88,12 +88,12 @@ TEST(DeviceMount, SendsNoMoreThanTheDeviceRendersInTheSameDirection) {
   MountSpec spec = turned(2);
   spec.max_force = 5;
   Mounted mounted(spec);
-  mounted.tip(Vec3::Zero(), Vec3(0, 30, 40)); // 100 N of the device's
+  mounted.tip(Vec3::Zero(), Vec3(0, 30, 40)); // 100 N at the device
   EXPECT_LE(mounted.script.force.norm(), 5);
   EXPECT_LT((mounted.script.force - Vec3(3, 0, 4)).norm(), 1e-13);
 }
 
-TEST(DeviceMount, UnderAClutchTheTipStaysAndGoesOnFromThereWithoutAJump) {
+TEST(DeviceMount, HoldsTheTipUnderAClutchAndContinuesWithoutAJump) {
   Mounted mounted(turned(4));
   const Vec3 held = mounted.tip(Vec3(0.01, 0, 0));
   mounted.controls->clutched = true;
@@ -110,7 +110,7 @@ TEST(DeviceMount, UnderAClutchTheTipStaysAndGoesOnFromThereWithoutAJump) {
   EXPECT_LT((mounted.tip(hand + Vec3(0, 0, 0.01)) - held - Vec3(0, 0, 0.04)).norm(), 1e-15);
 }
 
-TEST(DeviceMount, AButtonOfTheDeviceIsAClutchWhileItIsDown) {
+TEST(DeviceMount, ButtonIsAClutchWhileDown) {
   MountSpec spec;
   spec.clutch_button = 2;
   Mounted mounted(spec);
@@ -118,7 +118,7 @@ TEST(DeviceMount, AButtonOfTheDeviceIsAClutchWhileItIsDown) {
   EXPECT_EQ(mounted.tip(Vec3(1, 0, 0)), Vec3(1, 0, 0));
   EXPECT_EQ(mounted.tip(Vec3(2, 0, 0)), Vec3(2, 0, 0));
   mounted.script.state.buttons = 0b100;
-  EXPECT_EQ(mounted.tip(Vec3(3, 0, 0)), Vec3(3, 0, 0)) << "where it was when it was pressed";
+  EXPECT_EQ(mounted.tip(Vec3(3, 0, 0)), Vec3(3, 0, 0)) << "where the button was pressed";
   EXPECT_EQ(mounted.tip(Vec3(4, 0, 0), Vec3(1, 1, 1)), Vec3(3, 0, 0));
   EXPECT_EQ(mounted.script.force, Vec3::Zero());
   mounted.script.state.buttons = 0;
@@ -127,7 +127,7 @@ TEST(DeviceMount, AButtonOfTheDeviceIsAClutchWhileItIsDown) {
 }
 
 // The force rises evenly from zero over kMountFadeTime: in contact it would step.
-TEST(DeviceMount, WithoutEnableOrUnderAClutchNoForceIsSentAndItComesBackEvenly) {
+TEST(DeviceMount, SendsNoForceUnlessEnabledAndUnclutchedAndRampsItBack) {
   for (std::atomic<bool> MountControls::*control :
        {&MountControls::enabled, &MountControls::clutched}) {
     const bool rests = control == &MountControls::clutched;
@@ -139,7 +139,7 @@ TEST(DeviceMount, WithoutEnableOrUnderAClutchNoForceIsSentAndItComesBackEvenly) 
       EXPECT_EQ(mounted.script.force, Vec3::Zero());
     }
     (*mounted.controls).*control = !rests;
-    if (rests) mounted.tip(Vec3::Zero(), force); // is still held by the last reading
+    if (rests) mounted.tip(Vec3::Zero(), force); // the last reading still holds it
     for (int i = 1; i < 200; ++i) {
       mounted.tip(Vec3::Zero(), force);
       EXPECT_NEAR(mounted.script.force.z(), 2 * std::min(1.0, i * kDyadicPeriod / kMountFadeTime),
@@ -148,13 +148,13 @@ TEST(DeviceMount, WithoutEnableOrUnderAClutchNoForceIsSentAndItComesBackEvenly) 
   }
 }
 
-TEST(DeviceMount, WithoutEnableTheTipFollows) {
+TEST(DeviceMount, TipFollowsWithoutEnable) {
   Mounted mounted(turned(1));
   mounted.controls->enabled = false;
   EXPECT_EQ(mounted.tip(Vec3(1, 0, 0)), Vec3(0.5, 1.25, -0.125));
 }
 
-TEST(DeviceMount, PassesAFailureOnAndIsNotSpoiledByIt) {
+TEST(DeviceMount, PassesAFailureOnAndRecovers) {
   Mounted mounted(turned(4));
   const Vec3 held = mounted.tip(Vec3(0.01, 0, 0));
   mounted.controls->clutched = true;
@@ -169,7 +169,7 @@ TEST(DeviceMount, PassesAFailureOnAndIsNotSpoiledByIt) {
   EXPECT_EQ(mounted.tip(Vec3(0.02, 0, 0)), held);
 }
 
-TEST(DeviceMount, RefusesWhatIsNoMount) {
+TEST(DeviceMount, RefusesInvalidMounts) {
   EXPECT_THROW(Mounted(turned(0)), std::invalid_argument);
   EXPECT_THROW(Mounted(turned(std::nan(""))), std::invalid_argument);
   MountSpec spec;

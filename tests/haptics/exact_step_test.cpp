@@ -1,4 +1,4 @@
-#include "haptics/devices/exact_step.h"
+#include "haptics/loop_model/zoh_integrator.h"
 
 #include <gtest/gtest.h>
 
@@ -25,31 +25,31 @@ Motion integrated(const Oscillator& body, Motion m, double force, double dt) {
   return m;
 }
 
-TEST(ExactStep, AgreesWithFineIntegrationWithAndWithoutSpring) {
+TEST(ZohIntegrator, AgreesWithFineIntegrationWithAndWithoutSpring) {
   for (const double damping : {0., .5, 20., 300.})
     for (const double spring : {0., 1e-6, 40., 1e4})
       for (const double dt : {1e-4, 1e-3, 2e-2}) {
         const Oscillator body{.1, damping, spring, 0};
         const Motion from{2e-3, -.3};
-        const Motion exact = ExactStep(body, dt)(from, .7);
+        const Motion exact = ZohIntegrator(body, dt)(from, .7);
         const Motion reference = integrated(body, from, .7, dt);
         EXPECT_NEAR(exact.x, reference.x, 1e-13) << damping << " " << spring << " " << dt;
         EXPECT_NEAR(exact.v, reference.v, 1e-11) << damping << " " << spring << " " << dt;
       }
 }
 
-TEST(ExactStep, ASoftSpringIsAlmostNone) {
-  const HeldStep none = heldStep({.1, .5, 0, 0}, 1e-3), soft = heldStep({.1, .5, 1e-12, 0}, 1e-3);
+TEST(ZohIntegrator, SoftSpringApproachesNoSpring) {
+  const ZohStep none = zohStep({.1, .5, 0, 0}, 1e-3), soft = zohStep({.1, .5, 1e-12, 0}, 1e-3);
   EXPECT_NEAR(soft.xf / none.xf, 1, 1e-11);
   EXPECT_NEAR(soft.vf / none.vf, 1, 1e-11);
   EXPECT_NEAR(soft.xv / none.xv, 1, 1e-11);
 }
 
-// x = b dt/m; (1 - e^-x)/x and its integral as they are, or where they lose their digits by series.
-TEST(HeldStep, WithoutASpringIsTheClosedFormHoweverMuchItIsDamped) {
+// x = b dt/m; (1 - e^-x)/x and its integral directly, or by series where they lose their digits.
+TEST(ZohStep, MatchesTheClosedFormWithoutASpringAtAnyDamping) {
   const double m = .1, dt = 1e-3;
   for (const double x : {0., 1e-12, 1e-6, 1e-3, .3, 20., 1e3}) {
-    const HeldStep step = heldStep({m, x * m / dt, 0, 0}, dt);
+    const ZohStep step = zohStep({m, x * m / dt, 0, 0}, dt);
     const double c = x < 1e-4 ? 1 - x / 2 + x * x / 6 : -std::expm1(-x) / x;
     const double d = x < 1e-2 ? .5 - x / 6 + x * x / 24 - x * x * x / 120 : (1 - c) / x;
     EXPECT_NEAR(step.xx, 1, 1e-13) << x;
@@ -61,12 +61,12 @@ TEST(HeldStep, WithoutASpringIsTheClosedFormHoweverMuchItIsDamped) {
   }
 }
 
-// T-ST1: a held force gives the same motion however finely its period is stepped.
-TEST(ExactStep, HalvesMakeTheWhole) {
+// T-ST1: a held force gives the same motion for any subdivision of its period.
+TEST(ZohIntegrator, TwoHalfStepsEqualOneStep) {
   for (const double friction : {0., .2})
     for (const double spring : {0., 500.}) {
       const Oscillator body{.1, .5, spring, friction};
-      const ExactStep whole(body, 4e-3), part(body, 1e-3);
+      const ZohIntegrator whole(body, 4e-3), part(body, 1e-3);
       const Motion from{1e-3, .005};
       Motion parts = from;
       for (int i = 0; i < 4; ++i) parts = part(parts, -.6);
@@ -76,18 +76,18 @@ TEST(ExactStep, HalvesMakeTheWhole) {
     }
 }
 
-// Without damping: v^2 / (2 fc/m) until it stops.
-TEST(ExactStep, DryFrictionStopsWhereTheClosedFormSays) {
+// The undamped body travels v^2 / (2 fc/m) until it stops.
+TEST(ZohIntegrator, DryFrictionStopsAtTheClosedForm) {
   const Oscillator body{.1, 0, 0, .2};
-  const ExactStep step(body, 1e-3);
+  const ZohIntegrator step(body, 1e-3);
   Motion m{0, .05};
   for (int i = 0; i < 100; ++i) m = step(m, 0);
   EXPECT_NEAR(m.x, .05 * .05 * .1 / (2 * .2), 1e-15);
   EXPECT_EQ(m.v, 0);
 }
 
-TEST(ExactStep, DryFrictionHoldsUpToItsForceAndNoFurther) {
-  const ExactStep step({.1, .5, 0, .2}, 1e-3);
+TEST(ZohIntegrator, DryFrictionHoldsUpToItsForceAndNoFurther) {
+  const ZohIntegrator step({.1, .5, 0, .2}, 1e-3);
   EXPECT_EQ(step({3e-3, 0}, .2).x, 3e-3);
   EXPECT_EQ(step({3e-3, 0}, -.2).v, 0);
   EXPECT_GT(step({3e-3, 0}, .2001).v, 0);
@@ -95,9 +95,9 @@ TEST(ExactStep, DryFrictionHoldsUpToItsForceAndNoFurther) {
 }
 
 // Each half swing of a spring with dry friction alone loses 2 fc/k of amplitude.
-TEST(ExactStep, SpringAndDryFrictionLoseTwoFcOverKAHalfSwing) {
+TEST(ZohIntegrator, SpringAndDryFrictionLoseTwoFcOverKAHalfSwing) {
   const Oscillator body{.1, 0, 1000, .5};
-  const ExactStep step(body, 0.02); // about two thirds of a half swing
+  const ZohIntegrator step(body, 0.02); // about two thirds of a half swing
   Motion m{10.3e-3, 0};
   for (int i = 0; i < 400; ++i) m = step(m, 0);
   // 10.3 mm loses 1 mm each time and rests where the spring is below fc/k = 0.5 mm.
@@ -105,11 +105,11 @@ TEST(ExactStep, SpringAndDryFrictionLoseTwoFcOverKAHalfSwing) {
   EXPECT_EQ(m.v, 0);
 }
 
-TEST(ExactStep, RefusesWhatIsNoBody) {
-  EXPECT_THROW(ExactStep({0, 0, 0, 0}, 1e-3), std::invalid_argument);
-  EXPECT_THROW(ExactStep({.1, -1, 0, 0}, 1e-3), std::invalid_argument);
-  EXPECT_THROW(ExactStep({.1, 0, std::nan(""), 0}, 1e-3), std::invalid_argument);
-  EXPECT_THROW(ExactStep({.1, 0, 0, 0}, -1e-3), std::invalid_argument);
+TEST(ZohIntegrator, RefusesInvalidBodies) {
+  EXPECT_THROW(ZohIntegrator({0, 0, 0, 0}, 1e-3), std::invalid_argument);
+  EXPECT_THROW(ZohIntegrator({.1, -1, 0, 0}, 1e-3), std::invalid_argument);
+  EXPECT_THROW(ZohIntegrator({.1, 0, std::nan(""), 0}, 1e-3), std::invalid_argument);
+  EXPECT_THROW(ZohIntegrator({.1, 0, 0, 0}, -1e-3), std::invalid_argument);
 }
 
 } // namespace

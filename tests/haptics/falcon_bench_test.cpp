@@ -1,11 +1,11 @@
-// The emulated Falcon at its wire, without the driver: what the driver's tests stand on.
-#include "haptics/devices/falcon/emulated_falcon.h"
+// The emulated Falcon at its wire, without the driver: the basis of the driver's tests.
+#include "haptics/falcon/emulated_falcon.h"
 
 #include <gtest/gtest.h>
 
-#include "haptics/devices/falcon/falcon_device.h"
-#include "haptics/devices/falcon/falcon_frame.h"
-#include "haptics/devices/falcon/falcon_kinematics.h"
+#include "haptics/falcon/falcon_device.h"
+#include "haptics/falcon/falcon_frame.h"
+#include "haptics/falcon/falcon_kinematics.h"
 
 namespace patina {
 namespace {
@@ -18,7 +18,7 @@ std::vector<std::byte> bytesOf(std::initializer_list<int> values) {
 
 // A host with the bench on its bus.
 struct Host {
-  explicit Host(const FalconBenchSpec& spec = {}) : bench(spec, clock), usb(bench.plug()) {
+  explicit Host(const FalconEmulatorSpec& spec = {}) : bench(spec, clock), usb(bench.plug()) {
     set(9, 1); // an empty packet after a millisecond
   }
   void set(int request, int value) {
@@ -36,7 +36,7 @@ struct Host {
     EXPECT_EQ(got.result, UsbResult::ok);
     return {read.begin() + 2, read.begin() + static_cast<std::ptrdiff_t>(got.bytes)};
   }
-  // All that comes within `seconds`.
+  // Returns all that arrives within `seconds`.
   std::vector<std::byte> heard(double seconds) {
     std::vector<std::byte> all;
     for (const double until = clock->now() + seconds; clock->now() < until;) {
@@ -47,11 +47,11 @@ struct Host {
   }
 
   std::shared_ptr<SimulatedClock> clock = std::make_shared<SimulatedClock>();
-  FalconBench bench;
+  FalconEmulator bench;
   std::unique_ptr<UsbTransport> usb;
 };
 
-TEST(FalconBench, AnswersNoFrameWhoseEndsAreNone) {
+TEST(FalconEmulator, IgnoresFramesWithInvalidEnds) {
   for (const std::size_t end : {0, 15}) {
     Host host;
     FalconBytes bytes = encoded({{1, 2, 3}, 0, 0});
@@ -64,7 +64,7 @@ TEST(FalconBench, AnswersNoFrameWhoseEndsAreNone) {
   }
 }
 
-TEST(FalconBench, APacketComesWithTheAnswerAndNotWithTheLatencyTimer) {
+TEST(FalconEmulator, SendsAPacketWithTheAnswerNotTheLatencyTimer) {
   Host host({.answer = 220e-6});
   host.packet();
   host.send(encoded({}));
@@ -73,11 +73,11 @@ TEST(FalconBench, APacketComesWithTheAnswerAndNotWithTheLatencyTimer) {
   EXPECT_NEAR(host.clock->now() - sent, 220e-6, 1e-9);
 }
 
-TEST(FalconBench, AStaleAnswerHasThisFramesBehindIt) {
+TEST(FalconEmulator, StaleAnswerPrecedesThisFramesAnswer) {
   Host host;
   host.send(encoded({}));
   const auto before = host.heard(0.005);
-  host.bench.rest = Vec3(0, 0, 0.01); // the next says another place
+  host.bench.rest = Vec3(0, 0, 0.01); // the next answer has another position
   host.bench.faults = {WireFault::stale, 1};
   host.send(encoded({}));
   const auto both = host.heard(0.005);
@@ -85,8 +85,8 @@ TEST(FalconBench, AStaleAnswerHasThisFramesBehindIt) {
   EXPECT_TRUE(std::equal(before.begin(), before.end(), both.begin()));
 }
 
-TEST(FalconBench, ItsGearsBeginInTheMiddleOfTheirPlay) {
-  Host host({.play = 0.04}); // sixty counts
+TEST(FalconEmulator, GearsStartInTheMiddleOfTheirBacklash) {
+  Host host({.backlash = 0.04}); // sixty counts
   host.send(encoded({}));
   const auto bytes = host.heard(0.005);
   ASSERT_EQ(bytes.size(), kFalconFrame);
@@ -98,7 +98,7 @@ TEST(FalconBench, ItsGearsBeginInTheMiddleOfTheirPlay) {
                 (*angles)[leg], 0.51 * kFalconCount);
 }
 
-TEST(FalconBench, ItsResetBeginsItsBootLoaderAnewThoughTheBridgeIsEmptiedMeanwhile) {
+TEST(FalconEmulator, ResetRestartsTheBootLoaderEvenIfTheBridgeIsEmptied) {
   Host host({.runs_firmware = false});
   for (int round = 0; round < 2; ++round) {
     host.set(3, 0x4138);

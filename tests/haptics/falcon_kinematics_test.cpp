@@ -1,5 +1,5 @@
 // The Falcon's kinematics against the linkage itself, solved by bisection in long double.
-#include "haptics/devices/falcon/falcon_kinematics.h"
+#include "haptics/falcon/falcon_kinematics.h"
 
 #include <gtest/gtest.h>
 
@@ -8,14 +8,15 @@
 #include <numbers>
 #include <random>
 
-#include "haptics/devices/falcon/falcon_device.h"
+#include "haptics/falcon/falcon_device.h"
 
 namespace patina {
 namespace {
 
 const FalconShape kShape{};
 
-// The linkage of leg i, closed: how far its parallelogram's end misses the handle, squared [m^2].
+// Closure error of leg i's linkage: squared distance of its parallelogram's end from the handle
+// [m^2].
 long double misses(const Vec3& p, double leg, long double theta) {
   const long double c = std::cos(static_cast<long double>(leg));
   const long double s = std::sin(static_cast<long double>(leg));
@@ -28,7 +29,7 @@ long double misses(const Vec3& p, double leg, long double theta) {
   return u * u + w * w - reach * reach;
 }
 
-// Of the two closures the one with the knee outwards.
+// Returns the closure whose knee points outwards.
 double thighByBisection(const Vec3& p, double leg) {
   const long double pu = p.x() * std::cos(leg) + p.y() * std::sin(leg) - 0.040 + 0.01443;
   long double in = std::atan2(static_cast<long double>(p.z()), pu);
@@ -52,7 +53,7 @@ Angles thighs(const Vec3& p) {
   return angles;
 }
 
-// The workspace is as round as the base.
+// The workspace has the symmetry of the base.
 Vec3 inWorkspace(std::mt19937& random) {
   std::uniform_real_distribution<double> part(-1, 1);
   Vec3 share;
@@ -62,7 +63,7 @@ Vec3 inWorkspace(std::mt19937& random) {
   return kFalconCentre + share.cwiseProduct(kFalconWorkspace.max());
 }
 
-TEST(FalconKinematics, AnglesAreThoseOfTheLinkage) {
+TEST(FalconKinematics, AnglesMatchTheLinkage) {
   std::mt19937 random(1);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p = inWorkspace(random);
@@ -73,10 +74,10 @@ TEST(FalconKinematics, AnglesAreThoseOfTheLinkage) {
 }
 
 // A million poses: the residual by the linkage for each thousandth, by the closed form for all.
-TEST(FalconKinematics, AMillionPosesAreFoundFromTheirAnglesInAtMostSixSteps) {
+TEST(FalconKinematics, FindsAMillionPosesFromAnglesInAtMostSixSteps) {
   std::mt19937 random(2);
   double residual = 0, apart = 0;
-  int most_steps = 0;
+  int max_steps = 0;
   for (int i = 0; i < 1'000'000; ++i) {
     const Vec3 p = inWorkspace(random);
     const Angles angles = i % 1000 == 0 ? thighs(p) : *falconAngles(kShape, p);
@@ -88,15 +89,15 @@ TEST(FalconKinematics, AMillionPosesAreFoundFromTheirAnglesInAtMostSixSteps) {
     if (i % 1000 == 0)
       residual = std::max(residual, (thighs(pose.handle) - angles).lpNorm<Eigen::Infinity>());
     apart = std::max(apart, (pose.handle - p).norm());
-    most_steps = std::max(most_steps, pose.steps);
+    max_steps = std::max(max_steps, pose.steps);
   }
   EXPECT_LE(residual, 1e-9); // [rad]; 3.5e-14 measured
   EXPECT_LE(apart, 1e-9);    // [m]; 3.5e-15 measured
-  EXPECT_LE(most_steps, kFalconSteps);
-  std::printf("residual %.2g rad, round trip %.2g m, %d steps\n", residual, apart, most_steps);
+  EXPECT_LE(max_steps, kFalconSteps);
+  std::printf("residual %.2g rad, round trip %.2g m, %d steps\n", residual, apart, max_steps);
 }
 
-TEST(FalconKinematics, FromTheLastPoseItTakesFewSteps) {
+TEST(FalconKinematics, TakesFewStepsFromTheLastPose) {
   std::mt19937 random(3);
   std::normal_distribution<double> step(0, 5e-4); // [m] a tick: 0.5 m/s
   for (int i = 0; i < 20000; ++i) {
@@ -108,8 +109,8 @@ TEST(FalconKinematics, FromTheLastPoseItTakesFewSteps) {
   }
 }
 
-// Any 16 bits that an encoder may say, and worse.
-TEST(FalconKinematics, EveryAngleGivesAFinitePoseThatSaysWhetherItIsOne) {
+// Any 16 bits of an encoder, and worse.
+TEST(FalconKinematics, EveryAngleGivesAFinitePoseMarkedValidOrNot) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(-25, 25);
@@ -119,7 +120,7 @@ TEST(FalconKinematics, EveryAngleGivesAFinitePoseThatSaysWhetherItIsOne) {
     const FalconPose pose = falconPose(kShape, angles);
     ASSERT_TRUE(pose.handle.allFinite() && std::isfinite(pose.residual)) << angles.transpose();
     if (!pose.singular && pose.residual <= kFalconResidual) {
-      ++poses; // then each linkage closes there, whichever way its knee points
+      ++poses; // each linkage then closes, with its knee on either side
       for (int leg = 0; leg < 3; ++leg)
         ASSERT_LT(std::abs(misses(pose.handle, turnOf(leg), angles[leg])), 1e-10);
     }
@@ -133,7 +134,7 @@ TEST(FalconKinematics, EveryAngleGivesAFinitePoseThatSaysWhetherItIsOne) {
 }
 
 // Stretched until the three shanks lie in a plane: the handle could be pushed through it.
-TEST(FalconKinematics, ASingularPoseIsFiniteAndSaysSo) {
+TEST(FalconKinematics, SingularPoseIsFiniteAndReported) {
   const double flat = std::acos((0.125 - 0.060 + 0.0 - 0.040 + 0.01443 + 0.0) / 0.125);
   std::vector<Angles> cases{Angles::Constant(std::numbers::pi / 2 + flat)};
   for (double angle = -3; angle <= 3; angle += 1e-3) cases.push_back(Angles::Constant(angle));
@@ -151,7 +152,7 @@ TEST(FalconKinematics, ASingularPoseIsFiniteAndSaysSo) {
   EXPECT_GT(singular, 0);
 }
 
-TEST(FalconKinematics, TorquesDoTheWorkOfTheForce) {
+TEST(FalconKinematics, TorquesDoTheSameWorkAsTheForce) {
   std::mt19937 random(5);
   std::normal_distribution<double> any(0, 1);
   for (int i = 0; i < 500; ++i) {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "haptics/devices/falcon/emulated_falcon.h"
-#include "haptics/devices/falcon/falcon_device.h"
-#include "haptics/devices/link/link_loop.h"
+#include "haptics/falcon/emulated_falcon.h"
+#include "haptics/falcon/falcon_device.h"
+#include "haptics/link/link_loop.h"
 
 namespace patina::test {
 
@@ -27,9 +27,9 @@ inline std::vector<std::byte> madeUpFirmware(std::size_t size = 8000) {
 
 class FalconRig {
  public:
-  explicit FalconRig(const FalconBenchSpec& spec = {}, FalconFirmwareSource firmware = {},
+  explicit FalconRig(const FalconEmulatorSpec& spec = {}, FalconFirmwareSource firmware = {},
                      const GuardSpec& guard = falconGuard())
-      : clock(std::make_shared<SimulatedClock>()), notes(std::make_shared<LinkNotes>()),
+      : clock(std::make_shared<SimulatedClock>()), notes(std::make_shared<LinkStatistics>()),
         bench(spec, clock),
         loop(makeFalconLink([this] { return bench.plug(); }, std::move(firmware), clock), guard,
              clock, notes) {
@@ -38,7 +38,8 @@ class FalconRig {
     };
   }
 
-  // A tick of the servo: a new command, unless it has stopped, and the millisecond's rest.
+  // Runs one tick of the servo: a new command, unless it has stopped, and the rest of the
+  // millisecond.
   const DeviceState& tick(const Vec3& force, bool servo_runs = true) {
     due_ += 1e-3;
     if (due_ < clock->now()) due_ = clock->now();
@@ -46,14 +47,14 @@ class FalconRig {
     if (servo_runs) command = {force, clock->now()};
     return loop.step(command);
   }
-  // Until it is felt; false if not within `seconds`.
+  // Waits until the device is ok; returns false if that takes longer than `seconds`.
   bool waitUntilOk(double seconds, const Vec3& force = Vec3::Zero()) {
     const double until = clock->now() + seconds;
     while (clock->now() < until)
       if (tick(force).status == DeviceStatus::ok) return true;
     return false;
   }
-  // Until the guard lets all of the force through.
+  // Waits until the guard lets all of the force through.
   bool waitUntilFelt(const Vec3& force, double seconds = 3) {
     const double until = clock->now() + seconds;
     while (clock->now() < until) {
@@ -64,9 +65,9 @@ class FalconRig {
   }
 
   std::shared_ptr<SimulatedClock> clock;
-  std::shared_ptr<LinkNotes> notes;
+  std::shared_ptr<LinkStatistics> notes;
   std::vector<SentFrame> sent;
-  FalconBench bench;
+  FalconEmulator bench;
   LinkLoop loop;
   LinkCommand command;
 

@@ -1,5 +1,5 @@
 // The Falcon's frames, bring-up and firmware, against the emulated device.
-#include "haptics/devices/falcon/falcon_device.h"
+#include "haptics/falcon/falcon_device.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/sha256.h"
-#include "haptics/devices/falcon/falcon_frame.h"
+#include "haptics/falcon/falcon_frame.h"
 #include "haptics/falcon_support.h"
 #include "support/fresh_folder.h"
 #include "support/longer.h"
@@ -27,7 +27,7 @@ FalconBytes textual(const char* text) {
   return bytes;
 }
 
-TEST(FalconFrame, IsWrittenAsTheWireHasIt) {
+TEST(FalconFrame, MatchesTheWireFormat) {
   // 0x1234, -1 and 0, little end first; green and homing; by hand.
   const FalconCommand command{{0x1234, -1, 0}, FalconLights::kGreen, 0x01};
   EXPECT_EQ(encoded(command), textual("<EDCBPPPPAAAADA>"));
@@ -47,10 +47,10 @@ TEST(FalconFrame, EveryEncoderValueButtonAndAxisIsReadBack) {
   }
 }
 
-TEST(FalconFrame, OneByteThatNoFrameHasIsSeen) {
+TEST(FalconFrame, DetectsOneInvalidByte) {
   const FalconBytes good = encoded({{1, 2, 3}, 0, 0});
   for (std::size_t i = 0; i < good.size(); ++i) {
-    if (i == 14) continue; // says nothing that is known
+    if (i == 14) continue; // byte without a meaning
     for (int value = 0; value < 256; ++value) {
       FalconBytes bytes = good;
       bytes[i] = static_cast<std::byte>(value);
@@ -64,7 +64,7 @@ TEST(FalconFrame, OneByteThatNoFrameHasIsSeen) {
 }
 
 // Ten million torques of every kind that a double has.
-TEST(FalconFrame, NoTorqueGivesMoreThanTheMotorsLimitOrTheWrongSign) {
+TEST(FalconFrame, NeverExceedsTheMotorLimitNorFlipsTheSign) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> ordinary(0, 0.2);
   const auto any = [&](int kind) {
@@ -79,14 +79,14 @@ TEST(FalconFrame, NoTorqueGivesMoreThanTheMotorsLimitOrTheWrongSign) {
       return std::copysign(3.2767 + 1e-4 * static_cast<double>(random() & 15), ordinary(random));
     }
   };
-  const double per_torque = kMostMotor / kFalconFullTorque;
+  const double per_torque = kMaxMotor / kFalconFullTorque;
   for (int i = 0; i < 10'000'000; ++i) {
     const int kind = static_cast<int>(random() & 3);
     const Vec3 torques(any(kind), any(i & 3), any(kind));
     const auto values = motorValues(torques, per_torque);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double asked = torques[static_cast<int>(axis)];
-      ASSERT_LE(std::abs(int{values[axis]}), kMostMotor);
+      ASSERT_LE(std::abs(int{values[axis]}), kMaxMotor);
       if (values[axis] != 0) {
         ASSERT_TRUE(torques.allFinite());
         ASSERT_EQ(values[axis] > 0, asked > 0);
@@ -96,10 +96,10 @@ TEST(FalconFrame, NoTorqueGivesMoreThanTheMotorsLimitOrTheWrongSign) {
   }
 }
 
-TEST(FalconFrame, WhatIsTooMuchKeepsItsDirection) {
-  const auto values = motorValues(Vec3(1, -2, 0.5), kMostMotor / kFalconFullTorque);
+TEST(FalconFrame, KeepsTheDirectionOfALimitedForce) {
+  const auto values = motorValues(Vec3(1, -2, 0.5), kMaxMotor / kFalconFullTorque);
   EXPECT_EQ(values[0], 2047);
-  EXPECT_EQ(values[1], -kMostMotor);
+  EXPECT_EQ(values[1], -kMaxMotor);
   EXPECT_EQ(values[2], 1023);
 }
 
@@ -122,7 +122,7 @@ std::string fileErrorOf(const std::function<void()>& call) {
   return {};
 }
 
-TEST(FalconFirmware, IsTheUsersFileOfTheRightSizeThatSomebodyVouchesFor) {
+TEST(FalconFirmware, RequiresTheRightSizeAndAVerifiedHash) {
   const Firmware good, small(7000);
   const std::string name = good.file.string();
   std::string text(8000, 0);
@@ -135,23 +135,23 @@ TEST(FalconFirmware, IsTheUsersFileOfTheRightSizeThatSomebodyVouchesFor) {
                                   "has 7324 to 8492");
   EXPECT_EQ(fileErrorOf([&] { (void)readFalconFirmware(good.file, ""); }),
             name +
-                ": nobody has vouched for this firmware: if its SHA-256 is that of the maker's "
+                ": this firmware is not verified: if its SHA-256 is that of the maker's "
                 "file, set PATINA_FALCON_SHA256=" +
                 digest);
   const std::string other(64, '0');
   EXPECT_EQ(fileErrorOf([&] { (void)readFalconFirmware(good.file, other); }),
-            name + ": is another firmware than the one vouched for: its SHA-256 is " + digest +
+            name + ": is not the verified firmware: its SHA-256 is " + digest +
                 ", PATINA_FALCON_SHA256 is " + other);
   EXPECT_NE(fileErrorOf([&] { (void)readFalconFirmware("/nowhere/at/all", "any"); }), "");
 }
 
-TEST(FalconBringUp, AFirmwareThatRunsIsNotLoadedAgain) {
+TEST(FalconBringUp, DoesNotReloadARunningFirmware) {
   FalconRig rig;
   EXPECT_TRUE(rig.waitUntilOk(0.5));
   EXPECT_LT(rig.clock->now(), 0.1);
 }
 
-TEST(FalconBringUp, LoadsTheFirmwareWhereNoneRunsAndHomesWithEitherBit) {
+TEST(FalconBringUp, LoadsMissingFirmwareAndHomesWithEitherBit) {
   const Firmware file;
   for (const std::uint8_t bit : kHomingBits) {
     FalconRig rig(
@@ -165,8 +165,8 @@ TEST(FalconBringUp, LoadsTheFirmwareWhereNoneRunsAndHomesWithEitherBit) {
   }
 }
 
-// Five of a hundred chunks never arrive or are echoed late, and each time it is another five.
-TEST(FalconBringUp, LoadsOverALineThatLosesOneChunkInTwentyWithinTenSeconds) {
+// Five of a hundred chunks are lost or echoed late, and each time it is another five.
+TEST(FalconBringUp, LoadsWithinTenSecondsIfOneChunkInTwentyIsLost) {
   const Firmware file;
   double longest = 0;
   int loaded = 0;
@@ -188,8 +188,8 @@ TEST(FalconBringUp, LoadsOverALineThatLosesOneChunkInTwentyWithinTenSeconds) {
   std::printf("%d of 100 loaded, the longest in %.1f s\n", loaded, longest);
 }
 
-TEST(FalconBringUp, SaysInOneSentenceWhatIsMissing) {
-  const auto causeAfter = [](double seconds, const FalconBenchSpec& spec,
+TEST(FalconBringUp, ReportsMissingPartsInOneSentence) {
+  const auto causeAfter = [](double seconds, const FalconEmulatorSpec& spec,
                              const FalconFirmwareSource& source, bool attached = true) {
     FalconRig rig(spec, source);
     if (!attached) rig.bench.unplug();
@@ -210,7 +210,7 @@ TEST(FalconBringUp, SaysInOneSentenceWhatIsMissing) {
   EXPECT_EQ(refused.find('\n'), std::string::npos);
 }
 
-TEST(FalconDevice, TellsWhereTheHandleIsToACountOfItsEncoders) {
+TEST(FalconDevice, ReportsThePositionToOneEncoderCount) {
   FalconRig rig;
   ASSERT_TRUE(rig.waitUntilOk(1));
   std::mt19937 random(3);
@@ -225,20 +225,20 @@ TEST(FalconDevice, TellsWhereTheHandleIsToACountOfItsEncoders) {
     worst = std::max(worst, (state.position - rig.bench.handle()).norm());
   }
   EXPECT_LT(worst, 1e-4); // half a count of three legs
-  EXPECT_GT(worst, 1e-6); // and they are counts
+  EXPECT_GT(worst, 1e-6); // the position has the resolution of counts
 }
 
-TEST(FalconDevice, RendersTheForceThatIsAskedFor) {
+TEST(FalconDevice, RendersTheRequestedForce) {
   FalconRig rig({.body = {.mass = 0.25, .damping = 20, .spring = 400, .friction = 0}});
   for (const Vec3& force : {Vec3(1, 0, 0), Vec3(0, -2, 0), Vec3(0.5, 0.5, 2), Vec3(0, 0, -1)}) {
     ASSERT_TRUE(rig.waitUntilFelt(force));
     for (int i = 0; i < 2000; ++i) rig.tick(force);
     EXPECT_LT((rig.bench.motorForce() - force).norm(), 0.01) << force.transpose();
-    EXPECT_LT((rig.bench.handle() - force / 400).norm(), 5e-5); // where the hand's spring bears it
+    EXPECT_LT((rig.bench.handle() - force / 400).norm(), 5e-5); // the hand's spring balances it
   }
 }
 
-TEST(FalconDevice, MoreThanItsLimitIsScaledAndNothingThatIsNoForceIsSent) {
+TEST(FalconDevice, ScalesForcesAboveItsLimitAndSendsNoInvalidOnes) {
   FalconRig rig({.body = {.mass = 0.25, .damping = 20, .spring = 2000, .friction = 0}});
   ASSERT_TRUE(rig.waitUntilFelt(Vec3(1, 0, 0)));
   const double most = falconGuard().max_force;

@@ -1,5 +1,5 @@
-// A plug-in in the test's own program: it notes each exchange, and fails as it is told, from now
-// on.
+// A plug-in in the test's own program: it notes each exchange, and fails on request, from the next
+// exchange on.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "haptics/devices/plugin/plugin_device.h"
-#include "haptics/devices/plugin/plugin_library.h"
-#include "haptics/servo/realtime.h"
+#include "haptics/device/realtime.h"
+#include "haptics/plugin/plugin_device.h"
+#include "haptics/plugin/plugin_library.h"
 
 namespace patina::test {
 
@@ -43,14 +43,14 @@ struct Noted {
 inline struct Faulty {
   std::atomic<Fault> fault{Fault::none};
   std::atomic<int> calls{0}, closed{0};
-  std::atomic<double> left{0}; // [N], the most that was asked for right before a close
+  std::atomic<double> left{0}; // [N], largest force requested right before a close
   std::array<Noted, 20000> noted;
   std::atomic<bool> release{false};
 } faulty;
 
 inline void* openFaulty(const char* argument, char* why, std::size_t room) {
   if (std::strcmp(argument, "refuse") == 0) {
-    std::memset(why, 'x', room); // no zero ends it
+    std::memset(why, 'x', room); // without a final zero
     return nullptr;
   }
   if (std::strcmp(argument, "throw") == 0) throw 7;
@@ -135,7 +135,8 @@ inline void closeFaulty(void*) {
 inline const patina_device kFaulty{PATINA_DEVICE_ABI, sizeof(patina_device), describeFaulty,
                                    openFaulty,        exchangeFaulty,        closeFaulty};
 
-inline std::unique_ptr<Device> makeFaulty(const char* argument, std::shared_ptr<LinkNotes> notes) {
+inline std::unique_ptr<Device> makeFaulty(const char* argument,
+                                          std::shared_ptr<LinkStatistics> notes) {
   faulty.fault = Fault::none;
   faulty.calls = 0;
   faulty.closed = 0;

@@ -14,7 +14,7 @@ std::vector<TimedTip> press() {
   return path;
 }
 
-TEST(Feel, GivesOneSampleARowAsTheServoWould) {
+TEST(Feel, GivesOneSampleARowLikeTheServo) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), planeField());
   const std::vector<TimedTip> path = press();
   Progress progress;
@@ -38,7 +38,7 @@ TEST(Feel, GivesOneSampleARowAsTheServoWould) {
   }
 }
 
-TEST(Feel, NamesTheRowWhereTimeDoesNotIncrease) {
+TEST(Feel, NamesTheRowIfTimeDoesNotIncrease) {
   const auto snapshot = compileStages(sceneOf(500), planeField());
   std::vector<TimedTip> path = press();
   path[7].t = path[6].t;
@@ -53,7 +53,7 @@ TEST(Feel, NamesTheRowWhereTimeDoesNotIncrease) {
   EXPECT_THROW(feel(*snapshot, path, progress), Error);
 }
 
-TEST(Feel, SinglePointsAndNoPointsAreFelt) {
+TEST(Feel, HandlesSinglePointsAndNoPoints) {
   const auto snapshot = compileStages(sceneOf(500), planeField());
   Progress progress;
   EXPECT_TRUE(feel(*snapshot, {}, progress).empty());
@@ -69,7 +69,7 @@ TEST(Feel, StopsWhenCancelled) {
   EXPECT_THROW(feel(*snapshot, press(), progress), Cancelled);
 }
 
-// A wall that damps gives K d + b v, at whatever time the path begins.
+// A wall that damps gives K d + b v, also if the path begins at another time than 0.
 TEST(Feel, TakesTheSpeedFromTheTimeBetweenTwoRows) {
   Scene scene = sceneOf(500);
   scene.haptics.damping = 2;
@@ -83,8 +83,8 @@ TEST(Feel, TakesTheSpeedFromTheTimeBetweenTwoRows) {
   }
 }
 
-// Two sides of a ball: the straight way between them is not gone where there is a pause.
-TEST(Feel, APauseLiftsTheTip) {
+// Two sides of a ball: the tip skips the straight line between them at a pause.
+TEST(Feel, LiftsTheTipAtAPause) {
   const auto snapshot = compileStages(sceneOf(500), sphereField(0.03, 60));
   const auto felt = [&](double period, double pause) {
     std::vector<TimedTip> path;
@@ -103,8 +103,8 @@ TEST(Feel, APauseLiftsTheTip) {
   const auto [paused, apart] = felt(1e-3, 0.5);
   EXPECT_EQ(paused, 1u);
   EXPECT_EQ(apart[9].force.norm(), 0);
-  EXPECT_NEAR(apart[10].force.x(), -0.5, 1e-3) << "as deep as it is on this side";
-  // A slow path has long ticks and no pause: it is held where it went in.
+  EXPECT_NEAR(apart[10].force.x(), -0.5, 1e-3) << "as deep as on this side";
+  // A slow path has long ticks and no pause: the tip is held on its side of entry.
   const auto [none, through] = felt(1.0 / 30, 0);
   EXPECT_EQ(none, 0u);
   EXPECT_GT(through[10].force.x(), 1);

@@ -1,12 +1,12 @@
-// Fourier textures as they are felt (A22 to A25), against closed forms on a plane.
+// Rendered Fourier textures (A22 to A25), against closed forms on a plane.
 #include <array>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "geometry/tree/triangle_tree.h"
+#include "haptics/law/painted_range.h"
 #include "haptics/painted_fixture.h"
-#include "haptics/stability/painted_range.h"
 #include "support/constants.h"
 
 namespace patina {
@@ -20,17 +20,17 @@ FourierTexture waves(double length, const std::vector<double>& cosines,
   texture.omega = 2 * kPi / length;
   texture.series.a = cosines;
   texture.series.b.assign(cosines.size(), 0);
-  texture.low = leastHeight(texture);
+  texture.low = minHeight(texture);
   texture.compliance = compliance;
   return texture;
 }
 
-// A slab whose top, but for the faces at its rim, has this texture; x goes with the plane's x.
+// A slab whose top has this texture, except for the faces at its rim; x goes with the plane's x.
 struct TexturedSlab {
   Slab slab_;
-  LaidTextures laid;
+  TextureMappings laid;
   std::shared_ptr<const TexturePatches> patches;
-  FeltObject object;
+  HapticObject object;
 
   TexturedSlab(const FourierTexture& texture, double inside, double voxel = 0.5e-3)
       : slab_(slab(voxel, 40, 14)) {
@@ -43,26 +43,26 @@ struct TexturedSlab {
       for (int k = 0; k < 3; ++k) {
         const Vec3 p = mesh.corner(f, k);
         top = top && std::abs(p.z()) < 1e-9 && p.head<2>().cwiseAbs().maxCoeff() < inside;
-        face.at[static_cast<std::size_t>(k)] = p.head<2>();
+        face.coords[static_cast<std::size_t>(k)] = p.head<2>();
       }
       if (top) laid.faces.push_back(face);
     }
-    laid.library[5] = feltTexture(texture);
+    laid.library[5] = hapticTexture(texture);
     patches = std::make_shared<const TexturePatches>(mesh, laid);
     auto surface = std::make_shared<ReliefSurface>();
     surface->faces = reliefFaces(mesh, {});
     surface->textures = patches;
     object.relief = surface;
     object.highest = patches->highest();
-    object.bend = patches->bend();
+    object.max_curvature = patches->maxCurvature();
   }
-  FeltObject layered() const {
-    FeltObject made = object;
+  HapticObject layered() const {
+    HapticObject made = object;
     std::swap(made.relief, made.layer);
     return made;
   }
   std::shared_ptr<const HapticSnapshot> compiled(const Scene& scene) const {
-    const FeltObject felt = scene.haptics.texture_gain ? layered() : object;
+    const HapticObject felt = scene.haptics.texture_gain ? layered() : object;
     return compileStages(scene, slab_.field, std::span(&felt, 1));
   }
 };
@@ -74,7 +74,7 @@ Scene layerScene(double stiffness, double gain, ForceForm form = ForceForm::lite
   return scene;
 }
 
-// T-A22a: a profile of 0.5 mm, pressed where it is highest and flat.
+// T-A22a: a profile of 0.5 mm, pressed at its highest, flat point.
 TEST(TextureLayer, IsPressedBesideTheSurface) {
   const TexturedSlab plate(waves(8e-3, {0.25e-3}), 0.015);
   for (const ForceForm form : {ForceForm::literal, ForceForm::conservative}) {
@@ -82,14 +82,14 @@ TEST(TextureLayer, IsPressedBesideTheSurface) {
     EXPECT_NEAR(touchOnce(*snapshot, Vec3(0, 0, 0.2e-3)).force.z(), 0.06, 2e-6);
     EXPECT_NEAR(touchOnce(*snapshot, Vec3(0, 0, -1e-3)).force.z(), 0.8, 2e-6);
     EXPECT_FALSE(touchOnce(*snapshot, Vec3(0, 0, 0.51e-3)).touching);
-    // In the valley, which lies on the plane, there is nothing but the plane.
+    // In the valley, which lies on the plane, only the plane acts.
     EXPECT_FALSE(touchOnce(*snapshot, Vec3(4e-3, 0, 0.01e-3)).touching);
     EXPECT_NEAR(touchOnce(*snapshot, Vec3(4e-3, 0, -1e-3)).force.z(), 0.7, 2e-6);
   }
 }
 
 // T-A22b
-TEST(TextureLayer, ForceIsContinuousAndItsSlopeStepsWhereItShould) {
+TEST(TextureLayer, ForceIsContinuousAndItsSlopeStepsAtTheSurface) {
   const TexturedSlab plate(waves(8e-3, {0.25e-3}), 0.015);
   const auto snapshot = plate.compiled(layerScene(500, 0.4));
   const double h = 0.5e-3, d = 1e-5;
@@ -100,8 +100,8 @@ TEST(TextureLayer, ForceIsContinuousAndItsSlopeStepsWhereItShould) {
   EXPECT_NEAR((forceAt(-h - d) - forceAt(-h + d)) / (2 * d), 1.4 * 500, 2);
 }
 
-// T-A22c: friction is that of both.
-TEST(TextureLayer, FrictionFollowsTheSum) {
+// T-A22c: friction follows the sum of both forces.
+TEST(TextureLayer, FrictionFollowsTheSumOfBothForces) {
   const TexturedSlab plate(waves(8e-3, {0.25e-3}), 0.015);
   const double mu = 0.3;
   Scene scene = withFriction(layerScene(500, 0.4), mu, mu);
@@ -114,7 +114,8 @@ TEST(TextureLayer, FrictionFollowsTheSum) {
   for (int i = 0; i < 2000; ++i) contact = tick(*snapshot, memory, tip += Vec3(1e-6, 0, 0), 1e-3);
   const double h = 0.25e-3 * (1 + std::cos(2 * kPi * tip.x() / 8e-3));
   const double normal = 500 * 0.3e-3 + 0.4 * 500 * (0.3e-3 + h);
-  const Vec3 pressed = 500 * (contact.candidate - contact.tip), drag = contact.force - pressed;
+  const Vec3 pressed = 500 * (contact.frictionless_point - contact.tip),
+             drag = contact.force - pressed;
   EXPECT_NEAR(pressed.norm(), normal, 1e-4 * normal);
   EXPECT_NEAR(drag.norm(), mu * pressed.norm(), 1e-12);
   EXPECT_LT((drag.normalized() + Vec3::UnitX()).norm(), 0.02); // the stuck point rode up the wave
@@ -122,7 +123,7 @@ TEST(TextureLayer, FrictionFollowsTheSum) {
   EXPECT_TRUE(still.force.allFinite());
 }
 
-// T-A22e, F6: in at a valley, out at a peak.
+// T-A22e, F6: the tip goes in at a valley, out at a peak.
 double workOfLoop(const HapticSnapshot& snapshot, double along, double depth) {
   return loopWork(snapshot, {Vec3(0, 0, -depth), Vec3(along, 0, -depth), Vec3(along, 0, 1.2e-3),
                              Vec3(0, 0, 1.2e-3)});
@@ -131,16 +132,16 @@ double workOfLoop(const HapticSnapshot& snapshot, double along, double depth) {
 TEST(TextureLayer, OnlyTheConservativeFormDoesNoWorkRoundALoop) {
   const TexturedSlab plate(waves(8e-3, {0.25e-3}), 0.015);
   const double K = 500, gain = 0.4, dz = 1e-3;
-  // In at the peak (x = 0) and out at the valley. Below the plane: k_t K (h1 - h2) dz, and what is
-  // above it as U = k_t K h^2 / 2 has it.
+  // The tip goes in at the peak (x = 0) and out at the valley. Below the plane: k_t K (h1 - h2) dz,
+  // and above it the potential U = k_t K h^2 / 2.
   const double h = 0.5e-3, due = gain * K * (h * dz + 0.5 * h * h);
   EXPECT_NEAR(workOfLoop(*plate.compiled(layerScene(K, gain)), 4e-3, dz), -due, 0.01 * due);
   EXPECT_NEAR(workOfLoop(*plate.compiled(layerScene(K, gain, ForceForm::conservative)), 4e-3, dz),
               0, 0.01 * due);
 }
 
-// As the surface's own shape: K (d + h) along its normal, and no work round a loop.
-TEST(TextureRelief, IsTheShapeOfTheSurface) {
+// The texture as the surface's own shape: K (d + h) along its normal, and no work round a loop.
+TEST(TextureRelief, ChangesTheShapeOfTheSurface) {
   const TexturedSlab plate(waves(8e-3, {0.2e-3, 0, 0.02e-3}), 0.015);
   const auto snapshot = plate.compiled(sceneOf(500));
   for (double x = -6e-3; x < 6e-3; x += 0.29e-3) {
@@ -156,20 +157,21 @@ TEST(TextureRelief, IsTheShapeOfTheSurface) {
   EXPECT_NEAR(workOfLoop(*snapshot, 4e-3, 1e-3), 0, 1e-6);
 }
 
-TEST(TextureRelief, IsAsStiffAsItsComplianceSays) {
+TEST(TextureRelief, HasTheStiffnessOfItsCompliance) {
   const TexturedSlab plate(waves(8e-3, {0.1e-3}, 1. / 1500), 0.012);
   const auto snapshot = plate.compiled(sceneOf(400));
   const double d = 0.3e-3;
   EXPECT_NEAR(touchOnce(*snapshot, Vec3(0, 0, 0.1e-3 - d)).force.z(), 1500 * d, 1e-3);
   EXPECT_NEAR(touchOnce(*snapshot, Vec3(0.017, 0.001, -d)).force.z(), 400 * d, 1e-3);
-  // What must be stable is the stiffest.
+  // Stability depends on the largest stiffness.
   EXPECT_DOUBLE_EQ(
-      paintedRange(baseMaterial(sceneOf(400).haptics), std::span(&plate.object, 1)).most.stiffness,
+      paintedRange(baseMaterial(sceneOf(400).haptics), std::span(&plate.object, 1)).max.stiffness,
       1500);
   EXPECT_NEAR(workOfLoop(*snapshot, 0.0161, 0.5e-3), 0, 2e-6); // across the fade
 }
 
-// Over the faces where it fades, height and slope are one piece, and the slope is the height's.
+// On faces where the texture fades, height and slope are continuous, and the slope is the height's
+// derivative.
 TEST(TexturePatches, FadeSmoothlyAndKeepTheHeightsGradient) {
   const TexturedSlab plate(waves(8e-3, {0.2e-3, 0.05e-3}), 0.0121);
   const TriangleTree tree(*plate.slab_.mesh);
@@ -188,7 +190,7 @@ TEST(TexturePatches, FadeSmoothlyAndKeepTheHeightsGradient) {
       slope[k] =
           (seen(p + d * Vec3::Unit(k)).height - seen(p - d * Vec3::Unit(k)).height) / (2 * d);
     ASSERT_LT((slope - here.slope()).norm(), 2e-5) << p.transpose();
-    (here.texture.share == 1 ? whole : here.texture.share > 0 ? faded : none) += 1;
+    (here.texture.weight == 1 ? whole : here.texture.weight > 0 ? faded : none) += 1;
   }
   EXPECT_GT(whole, 1000);
   EXPECT_GT(faded, 200);
@@ -197,9 +199,10 @@ TEST(TexturePatches, FadeSmoothlyAndKeepTheHeightsGradient) {
               1e-12);
 }
 
-// T-A17: a texture is the same on two meshes along equal paths, to the last digits; forces to the
+// T-A17: a texture is the same on two meshes along equal paths, to the last digits; forces agree to
+// the field's error.
 // field's error.
-TEST(TexturePatches, ATextureIsTheSameOnAnyMesh) {
+TEST(TexturePatches, AreTheSameOnAnyMesh) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0, 1);
   FourierTexture texture = waves(20e-3, std::vector<double>(128, 0));
@@ -207,11 +210,11 @@ TEST(TexturePatches, ATextureIsTheSameOnAnyMesh) {
     texture.series.a[j] = 2e-5 * normal(random) / static_cast<double>(j + 1);
     texture.series.b[j] = 2e-5 * normal(random) / static_cast<double>(j + 1);
   }
-  texture.low = leastHeight(texture);
+  texture.low = minHeight(texture);
   const TexturedSlab coarse(texture, 0.0191);
   TriangleMesh fine = box(Vec3(0.04, 0.04, 0.012), 97);
   for (Vec3& p : fine.positions) p.z() -= 0.006;
-  LaidTextures laid;
+  TextureMappings laid;
   for (std::size_t f = 0; f < fine.triangles.size(); ++f) {
     TexturedFace face;
     face.face = static_cast<std::int32_t>(f);
@@ -219,11 +222,11 @@ TEST(TexturePatches, ATextureIsTheSameOnAnyMesh) {
     bool top = true;
     for (int k = 0; k < 3; ++k) {
       top = top && std::abs(fine.corner(f, k).z()) < 1e-9;
-      face.at[static_cast<std::size_t>(k)] = fine.corner(f, k).head<2>();
+      face.coords[static_cast<std::size_t>(k)] = fine.corner(f, k).head<2>();
     }
     if (top) laid.faces.push_back(face);
   }
-  laid.library[1] = feltTexture(texture);
+  laid.library[1] = hapticTexture(texture);
   const TexturePatches other(fine, laid);
   const TriangleTree coarse_tree(*coarse.slab_.mesh), fine_tree(fine);
   const double rms = rmsHeight(texture);
@@ -236,27 +239,27 @@ TEST(TexturePatches, ATextureIsTheSameOnAnyMesh) {
   }
 }
 
-// T-A25: where nothing is textured, or by a texture that is not known, no bit is another.
-TEST(TexturePatches, OfUnknownTexturesAreNotThere) {
+// T-A25: faces without a texture, or with an unknown one, change no bit.
+TEST(TexturePatches, SkipUnknownTextures) {
   TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
-  LaidTextures unknown = plate.laid;
+  TextureMappings unknown = plate.laid;
   unknown.library.clear();
   const TexturePatches none(*plate.slab_.mesh, unknown);
   EXPECT_EQ(none.highest(), 0);
-  EXPECT_EQ(none.bend(), 0);
-  for (std::int32_t f = 0; f < 100; ++f) EXPECT_EQ(none.at(f, Vec3::Zero()).texture.share, 0);
+  EXPECT_EQ(none.maxCurvature(), 0);
+  for (std::int32_t f = 0; f < 100; ++f) EXPECT_EQ(none.at(f, Vec3::Zero()).texture.weight, 0);
 }
 
-// A seam between coordinates that do not agree is no step: the texture is gone there.
+// A seam between inconsistent coordinates is no step: the texture fades out there.
 TEST(TexturePatches, FadeAtASeam) {
   TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
-  LaidTextures laid = plate.laid;
+  TextureMappings laid = plate.laid;
   for (TexturedFace& face : laid.faces) {
     double middle = 0;
     for (int k = 0; k < 3; ++k)
       middle += plate.slab_.mesh->corner(static_cast<std::size_t>(face.face), k).x();
     if (middle < 0)
-      for (Vec2& at : face.at) at.x() += 3e-3; // not a whole period
+      for (Vec2& at : face.coords) at.x() += 3e-3; // not a whole period
   }
   const TexturePatches patches(*plate.slab_.mesh, laid);
   const TriangleTree tree(*plate.slab_.mesh);
@@ -270,14 +273,14 @@ TEST(TexturePatches, FadeAtASeam) {
   EXPECT_LT(most, 1e-9);
 }
 
-// The lateral coupling keeps a texture quiet that is too stiff along the surface for the loop (F7),
-// be it of an image or of harmonics: its bend is known.
-TEST(TexturePatches, KnowTheirSharpestBend) {
+// The lateral coupling calms a texture that is too stiff along the surface for the loop (F7), for
+// images and harmonics: its curvature is computed.
+TEST(TexturePatches, ComputeTheirMaxCurvature) {
   const double length = 1e-3, amplitude = 0.1e-3;
   const TexturedSlab plate(waves(length, {amplitude}), 0.015);
   const double due = amplitude * std::pow(2 * kPi / length, 2);
-  EXPECT_GT(plate.patches->bend(), due);
-  EXPECT_LT(plate.patches->bend(), 2.5 * due); // of what fades, too
+  EXPECT_GT(plate.patches->maxCurvature(), due);
+  EXPECT_LT(plate.patches->maxCurvature(), 2.5 * due); // includes the fading faces
   Eigen::Matrix3d bend;
   const TriangleTree tree(*plate.slab_.mesh);
   const Vec3 p(0.13e-3, 0.2e-3, 0);
@@ -287,10 +290,10 @@ TEST(TexturePatches, KnowTheirSharpestBend) {
 }
 
 // T-A22d: pressed together, layer and surface are as hard for the loop as K (1 + k_t). The default
-// device asks for a coupling above half of its K* = 1000.8 N/m.
-TEST(TextureLayer, IsPlannedForTogetherWithItsSurface) {
+// device needs a coupling above half of its K* = 1000.8 N/m.
+TEST(TextureLayer, CouplingIncludesLayerAndSurface) {
   const TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
-  const FeltObject layered = plate.layered();
+  const HapticObject layered = plate.layered();
   Scene scene;
   scene.haptics.stiffness = 400;
   scene.device_model = DeviceModel{};
@@ -302,8 +305,8 @@ TEST(TextureLayer, IsPlannedForTogetherWithItsSurface) {
   }
 }
 
-// Whatever the coordinates are stretched and sheared by.
-TEST(TexturePatches, BoundTheBendOfStretchedCoordinates) {
+// The bound holds for coordinates that are stretched and sheared.
+TEST(TexturePatches, BoundTheCurvatureOfStretchedCoordinates) {
   for (const auto& [xx, xy, yx, yy] : {std::array{1., 0., 0., 1.},
                                        {1.5, 0.9, 0.9, 1.5},
                                        {0.4, 1.2, -0.3, 0.5},
@@ -312,11 +315,11 @@ TEST(TexturePatches, BoundTheBendOfStretchedCoordinates) {
     texture.kind = TextureKind::products;
     texture.products.push_back({{0, {1}, {0}}, texture.series});
     texture.series = {};
-    texture.low = leastHeight(texture);
+    texture.low = minHeight(texture);
     TexturedSlab plate(texture, 0.015);
-    LaidTextures laid = plate.laid;
+    TextureMappings laid = plate.laid;
     for (TexturedFace& face : laid.faces)
-      for (Vec2& at : face.at) at = Vec2(xx * at.x() + xy * at.y(), yx * at.x() + yy * at.y());
+      for (Vec2& at : face.coords) at = Vec2(xx * at.x() + xy * at.y(), yx * at.x() + yy * at.y());
     const TexturePatches patches(*plate.slab_.mesh, laid);
     const TriangleTree tree(*plate.slab_.mesh);
     std::mt19937 random(3);
@@ -329,36 +332,36 @@ TEST(TexturePatches, BoundTheBendOfStretchedCoordinates) {
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(0.5 * (bend + bend.transpose()));
       most = std::max(most, eigen.eigenvalues().cwiseAbs().maxCoeff());
     }
-    EXPECT_GT(patches.bend(), most) << xx << " " << xy;
-    EXPECT_LT(patches.bend(), 12 * most) << "fades included";
+    EXPECT_GT(patches.maxCurvature(), most) << xx << " " << xy;
+    EXPECT_LT(patches.maxCurvature(), 12 * most) << "fades included";
   }
 }
 
-// A sliver at the rim sets the whole scene's lateral coupling no more than any other face.
-TEST(TexturePatches, ASliverAtTheRimIsNoSharperThanAFaceHalfAsWide) {
+// A sliver at the rim does not stiffen the whole scene's lateral coupling more than other faces.
+TEST(TexturePatches, SliverAtTheEdgeIsNoSharperThanAFaceHalfAsWide) {
   const TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
   TriangleMesh mesh = *plate.slab_.mesh;
-  LaidTextures laid = plate.laid;
-  // One face of the rim is cut along an edge into a sliver and the rest.
-  const double usual = TexturePatches(mesh, laid).bend();
+  TextureMappings laid = plate.laid;
+  // One face at the rim is split along an edge into a sliver and the rest.
+  const double usual = TexturePatches(mesh, laid).maxCurvature();
   const TexturedFace first = laid.faces.front();
   const auto f = static_cast<std::size_t>(first.face);
   const Triangle corners = mesh.triangles[f];
   const Vec3 cut = mesh.corner(f, 0) + 1e-3 * (mesh.corner(f, 2) - mesh.corner(f, 0));
-  const Vec2 cut_at = first.at[0] + 1e-3 * (first.at[2] - first.at[0]);
+  const Vec2 cut_at = first.coords[0] + 1e-3 * (first.coords[2] - first.coords[0]);
   const auto added = static_cast<std::int32_t>(mesh.positions.size());
   mesh.positions.push_back(cut);
   mesh.triangles[f] = {added, corners[1], corners[2]};
   mesh.triangles.push_back({corners[0], corners[1], added});
-  laid.faces.front().at[0] = cut_at;
+  laid.faces.front().coords[0] = cut_at;
   laid.faces.push_back({static_cast<std::int32_t>(mesh.triangles.size()) - 1,
                         first.texture,
-                        {first.at[0], first.at[1], cut_at}});
-  EXPECT_LT(TexturePatches(mesh, laid).bend(), 5 * usual); // the fade's square, and room
+                        {first.coords[0], first.coords[1], cut_at}});
+  EXPECT_LT(TexturePatches(mesh, laid).maxCurvature(), 5 * usual); // the fade's square, and room
 }
 
-// A mesh that is cut into pieces in memory is one on the table.
-TEST(TexturePatches, VerticesInOnePlaceAreOne) {
+// A mesh that is cut into pieces in memory is one surface to the probe.
+TEST(TexturePatches, MergeVerticesAtOnePosition) {
   const TexturedSlab plate(waves(8e-3, {0.2e-3}), 0.015);
   TriangleMesh loose = *plate.slab_.mesh;
   std::vector<Vec3> positions;
@@ -376,8 +379,8 @@ TEST(TexturePatches, VerticesInOnePlaceAreOne) {
     const std::int32_t face = tree.closestPoint(p).surface.face;
     const PatchAt a = whole.at(face, p), b = pieces.at(face, p);
     ASSERT_EQ(a.height, b.height);
-    ASSERT_EQ(a.texture.share, b.texture.share);
-    faded += a.texture.share > 0 && a.texture.share < 1;
+    ASSERT_EQ(a.texture.weight, b.texture.weight);
+    faded += a.texture.weight > 0 && a.texture.weight < 1;
   }
   EXPECT_GT(faded, 20);
 }

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "haptics/law/friction_stage.h"
 #include "haptics/neutral_stages.h"
-#include "haptics/stages/friction_stage.h"
 #include "support/constants.h"
 #include "support/simulated_device.h"
 
@@ -39,7 +39,7 @@ TEST(Friction, IsElasticThenPlasticOnAPlane) {
   }
 }
 
-// K09: it takes mu_s d to break loose, then mu_d d acts until the motion turns.
+// K09: mu_s d is needed to break loose, then mu_d d acts until the motion reverses.
 TEST(Friction, SlipPersistsAtTheDynamicCoefficient) {
   const double K = 500, d = 2e-3;
   for (const auto slip : {Friction::SlipDirection::paper, Friction::SlipDirection::displacement}) {
@@ -98,7 +98,7 @@ TEST(Friction, RestsOnASlopeWithoutCreep) {
     ContactMemory memory;
     Vec3 tip = spec.position, force = Vec3::Zero();
     Vec3 after_settling = tip;
-    // Gravity in the frame of the slope rises slowly, so that the start is no blow.
+    // Gravity in the frame of the slope rises slowly, so that there is no impact at the start.
     const int ramp = 2000, settle = 6000, end = settle + 60000;
     for (int i = 0; i < end; ++i) {
       const double share = std::min(1.0, static_cast<double>(i) / ramp);
@@ -186,12 +186,12 @@ TEST(Friction, ZeroIsBitwiseTheFrictionlessPath) {
   }
 }
 
-TEST(Friction, LosingContactForgetsTheStuckPoint) {
+TEST(Friction, ForgetsTheStuckPointOutOfContact) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.8, 0.8), planeField());
   ContactMemory memory = pressedMemory(*snapshot, 2e-3);
   EXPECT_GT(tangential(glide(*snapshot, memory, Vec3(1e-3, 0, -2e-3))), 0.1);
   glide(*snapshot, memory, Vec3(1e-3, 0, 1e-4));
-  EXPECT_FALSE(memory.friction.grip);
+  EXPECT_FALSE(memory.friction.stick);
   EXPECT_LT(tangential(tick(*snapshot, memory, Vec3(1e-3, 0, -1e-3), kPeriod)), 1e-12);
 }
 
@@ -219,12 +219,12 @@ TEST(Friction, DraggedVcpStaysOnTheSurface) {
     const Contact contact = tick(*snapshot, memory, tip, kPeriod);
     if (i < 1000) continue;
     EXPECT_LT(std::abs(surface.at(contact.vcp).phi), 1e-7);
-    EXPECT_NEAR((contact.vcp - contact.candidate).norm(), 0.3 * contact.depth, 1e-10);
+    EXPECT_NEAR((contact.vcp - contact.frictionless_point).norm(), 0.3 * contact.depth, 1e-10);
     EXPECT_TRUE(memory.friction.slipping());
   }
 }
 
-// However slow the motion, the projection onto a curved surface must not look like a stop.
+// The projection onto a curved surface must not look like a stop, however slow the motion is.
 TEST(Friction, CreepingSlipOnACurveDoesNotChatter) {
   for (const auto slip : {Friction::SlipDirection::paper, Friction::SlipDirection::displacement}) {
     Scene scene = withFriction(sceneOf(500), 0.5, 0.3);
@@ -265,7 +265,7 @@ TEST(Friction, MassComesToRestWithoutChatter) {
   EXPECT_LT((tip - last).norm() / kPeriod, 1e-6);
 }
 
-// MATH 2.6: a wall steadied by damping along the normal alone would still buzz in stick.
+// MATH 2.6: a wall with damping along the normal alone would still buzz in stick.
 TEST(Friction, DampingActsOnTheStuckPoint) {
   Scene scene = withFriction(sceneOf(1500), 2, 2);
   scene.haptics.damping = 1.5;
@@ -287,8 +287,8 @@ TEST(Friction, DampingActsOnTheStuckPoint) {
   EXPECT_LT((tip - last).norm() / kPeriod, 1e-6);
 }
 
-// In a groove both walls bear more than they bear together: mu N / sin(alpha) at half an opening of
-// alpha, wherever across the groove the tip is.
+// In a groove both walls bear more than their sum: mu N / sin(alpha) at half an opening of alpha,
+// at any tip position across the groove.
 TEST(Friction, TwoWallsGripByTheWedgeFactor) {
   const double mu = 0.3, d = 2e-3;
   for (const double opening : {90.0, 60.0})
@@ -304,8 +304,10 @@ TEST(Friction, TwoWallsGripByTheWedgeFactor) {
       const double both = d / left.z(), more = -aside / left.x();
       contact.walls = 2;
       contact.wall = {{{left, 0.5 * (both + more)}, {right, 0.5 * (both - more)}}};
-      ASSERT_LT((contact.wall[0].load * left + contact.wall[1].load * right + contact.tip).norm(),
-                1e-12);
+      ASSERT_LT(
+          (contact.wall[0].multiplier * left + contact.wall[1].multiplier * right + contact.tip)
+              .norm(),
+          1e-12);
       contact.material.static_friction = contact.material.dynamic_friction = mu;
       const Field groove =
           cubeField([=](const Vec3& p) { return std::min(left.dot(p), right.dot(p)); }, 0.4e-3, 80);
@@ -313,8 +315,8 @@ TEST(Friction, TwoWallsGripByTheWedgeFactor) {
       const double reach = mu * d / std::sin(alpha);
       for (const double dragged : {0.99 * reach, 1.01 * reach, 5 * reach}) {
         ContactMemory memory;
-        memory.friction.grip =
-            FrictionMemory::Grip{Vec3(0, -dragged, 0), contact.candidate, contact.tip};
+        memory.friction.stick = FrictionMemory::StickState{Vec3(0, -dragged, 0),
+                                                           contact.frictionless_point, contact.tip};
         Contact now = contact;
         stage.apply(now, memory);
         EXPECT_EQ(memory.friction.slipping(), dragged > reach) << opening;
@@ -323,9 +325,9 @@ TEST(Friction, TwoWallsGripByTheWedgeFactor) {
     }
 }
 
-// Pressed past the axis of a bar the contact point runs round it by itself. That is no slip of the
-// hand's: the stuck point goes along, and the drag is what it was.
-TEST(Friction, ASnapCarriesTheStuckPointAlong) {
+// Pressed past the axis of a bar the contact point runs round it by itself. The hand does not slip
+// then: the stuck point goes along, and the drag is unchanged.
+TEST(Friction, SnapMovesTheStuckPointAlong) {
   const double radius = 3e-3;
   const Field bar =
       cubeField([=](const Vec3& p) { return std::hypot(p.x(), p.z()) - radius; }, 0.25e-3, 96);
@@ -344,8 +346,10 @@ TEST(Friction, ASnapCarriesTheStuckPointAlong) {
     ASSERT_FALSE(memory.friction.slipping());
     if (now.snap) {
       ++snaps;
-      way += (now.candidate - last.candidate).norm();
-      ASSERT_LT(((now.vcp - now.candidate) - (last.vcp - last.candidate)).norm(), 1e-12) << i;
+      way += (now.frictionless_point - last.frictionless_point).norm();
+      ASSERT_LT(((now.vcp - now.frictionless_point) - (last.vcp - last.frictionless_point)).norm(),
+                1e-12)
+          << i;
     }
     last = now;
   }

@@ -37,7 +37,7 @@ std::optional<Vec3> heldPoint(const Walls& walls, unsigned which, const Vec3& x)
   return x + normals * load;
 }
 
-// Of every set of at most three walls; of those that violate least, the nearest.
+// Tries every set of at most three walls; of the points that violate least, returns the nearest.
 Vec3 bruteForce(const Walls& walls, const Vec3& x) {
   Vec3 best = x;
   double least = std::numeric_limits<double>::infinity(), nearest = least;
@@ -58,21 +58,21 @@ void expectSum(const Walls& walls, const Vec3& x, const WallProjection& held) {
   Vec3 sum = x;
   for (int k = 0; k < held.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    ASSERT_GE(held.load[i], 0);
-    sum += held.load[i] * walls[held.active[i]].normal;
+    ASSERT_GE(held.multiplier[i], 0);
+    sum += held.multiplier[i] * walls[held.active[i]].normal;
   }
   ASSERT_LT((sum - held.z).norm(), 1e-12);
 }
 
-// Walls through a common free place, seen from points on either side of them; some of them twice.
-TEST(ProjectOntoWalls, IsTheNearestPointThatEveryWallLeavesFree) {
+// Walls through a common free point, seen from points on either side of them; some walls twice.
+TEST(ProjectOntoWalls, FindsTheNearestFreePoint) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
   std::array<int, 4> met{};
   for (int round = 0; round < 20000; ++round) {
     const Vec3 free = unit(random) * randomDirection(random);
     Walls walls;
-    const int count = round % (Walls::kMost + 1);
+    const int count = round % (Walls::kMax + 1);
     for (int i = 0; i < count; ++i) {
       Vec3 normal = randomDirection(random);
       if (i > 0 && unit(random) < 0.2) normal = walls[i - 1].normal;
@@ -88,8 +88,8 @@ TEST(ProjectOntoWalls, IsTheNearestPointThatEveryWallLeavesFree) {
   for (const int times : met) EXPECT_GT(times, 200);
 }
 
-// Also of walls that stand together but for little.
-TEST(ProjectOntoWalls, IsExactBesideParallelWalls) {
+// The same holds for nearly parallel walls.
+TEST(ProjectOntoWalls, IsExactNextToParallelWalls) {
   std::mt19937 random(4);
   for (int round = 0; round < 2000; ++round) {
     const Vec3 n = randomDirection(random);
@@ -105,7 +105,7 @@ TEST(ProjectOntoWalls, IsExactBesideParallelWalls) {
   }
 }
 
-TEST(ProjectOntoWalls, ViolatesLeastWhereNoPlaceIsFree) {
+TEST(ProjectOntoWalls, ViolatesLeastIfNoPointIsFree) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int round = 0; round < 2000; ++round) {
@@ -120,7 +120,7 @@ TEST(ProjectOntoWalls, ViolatesLeastWhereNoPlaceIsFree) {
   }
 }
 
-TEST(ProjectOntoWalls, APointOnAWallIsNotHeld) {
+TEST(ProjectOntoWalls, DoesNotHoldAPointOnAWall) {
   Walls walls;
   walls.add({Vec3::UnitZ(), 1, Vec3::Zero()});
   EXPECT_EQ(projectOntoWalls(walls, Vec3(5, 6, 1)).count, 0);
@@ -128,8 +128,8 @@ TEST(ProjectOntoWalls, APointOnAWallIsNotHeld) {
   EXPECT_EQ(projectOntoWalls(walls, Vec3(5, 6, 1 - 1e-8)).count, 1);
 }
 
-// Against a list that does what the header says.
-TEST(Walls, TheNewestComesLastAndTheFarthestGoes) {
+// The reference is a list that follows the header's rules.
+TEST(Walls, AppendTheNewestAndDropTheFarthest) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(0, 1);
   Walls walls;
@@ -141,9 +141,9 @@ TEST(Walls, TheNewestComesLastAndTheFarthestGoes) {
       expected.erase(expected.begin() + i);
     } else {
       const WallPlane wall{randomDirection(random), unit(random), 9 * randomDirection(random)};
-      if (expected.size() == Walls::kMost)
+      if (expected.size() == Walls::kMax)
         expected.erase(std::max_element(expected.begin(), expected.end(), [&](auto& a, auto& b) {
-          return (a.seen - wall.seen).norm() < (b.seen - wall.seen).norm();
+          return (a.point - wall.point).norm() < (b.point - wall.point).norm();
         }));
       walls.add(wall);
       expected.push_back(wall);
@@ -153,7 +153,7 @@ TEST(Walls, TheNewestComesLastAndTheFarthestGoes) {
       const WallPlane& wall = expected[static_cast<std::size_t>(i)];
       ASSERT_EQ(walls[i].normal, wall.normal);
       ASSERT_EQ(walls[i].offset, wall.offset);
-      ASSERT_EQ(walls[i].seen, wall.seen);
+      ASSERT_EQ(walls[i].point, wall.point);
     }
   }
 }

@@ -1,11 +1,11 @@
-#include "haptics/contact/hold.h"
+#include "haptics/contact/active_constraints.h"
 
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/stages/spring_stage.h"
+#include "haptics/law/spring_stage.h"
 
 namespace patina {
 namespace {
@@ -24,17 +24,17 @@ Contact heldBy(const std::vector<Contact::WallLoad>& walls) {
   return contact;
 }
 
-TEST(WallHold, WallsThatAreOneBearTheirSum) {
+TEST(ActiveConstraints, MergeNearlyParallelWalls) {
   const Contact contact = heldBy({{leaning(5), 3e-5}, {leaning(-4), 2e-5}});
-  const WallHold hold(contact);
+  const ActiveConstraints hold(contact);
   ASSERT_EQ(hold.count(), 1);
   const Vec3 sum = 3e-5 * leaning(5) + 2e-5 * leaning(-4);
-  EXPECT_LT((hold[0].load * hold[0].normal - sum).norm(), 1e-18);
+  EXPECT_LT((hold[0].multiplier * hold[0].normal - sum).norm(), 1e-18);
   EXPECT_NEAR(hold[0].normal.norm(), 1, 1e-15);
 }
 
-// Beside a wall of its own too: all that holds the tip is in the walls that count.
-TEST(WallHold, LosesNoLoad) {
+// The active constraints bear the whole load, also next to a wall of their own.
+TEST(ActiveConstraints, LoseNoLoad) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
   int merged = 0;
@@ -45,13 +45,13 @@ TEST(WallHold, LosesNoLoad) {
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < 1 + i % 3; ++k) {
       walls.push_back({(middle + spread * randomDirection(random)).normalized(), 1 - 0.3 * k});
-      sum += walls.back().load * walls.back().normal;
+      sum += walls.back().multiplier * walls.back().normal;
     }
-    const WallHold hold(heldBy(walls));
+    const ActiveConstraints hold(heldBy(walls));
     Vec3 borne = Vec3::Zero();
     for (int k = 0; k < hold.count(); ++k) {
-      borne += hold[k].load * hold[k].normal;
-      ASSERT_LT((hold.across(hold[k].normal) - hold[k].normal).norm(), 1e-12) << i;
+      borne += hold[k].multiplier * hold[k].normal;
+      ASSERT_LT((hold.constrainedPart(hold[k].normal) - hold[k].normal).norm(), 1e-12) << i;
     }
     merged += hold.count() < static_cast<int>(walls.size());
     ASSERT_LT((borne - sum).norm(), 1e-12) << i;
@@ -59,29 +59,29 @@ TEST(WallHold, LosesNoLoad) {
   EXPECT_GT(merged, 1000);
 }
 
-// Of two that bear the same, either may come first.
-TEST(WallHold, DoesNotTurnWithTheOrderOfItsWalls) {
-  const WallHold a(heldBy({{leaning(5), 1.001e-5}, {leaning(-5), 1e-5}}));
-  const WallHold b(heldBy({{leaning(-5), 1.001e-5}, {leaning(5), 1e-5}}));
-  EXPECT_LT((a.across(Vec3::UnitX()) - b.across(Vec3::UnitX())).norm(), 1e-4);
+// If two walls bear the same load, either may come first.
+TEST(ActiveConstraints, DoNotDependOnTheOrderOfWalls) {
+  const ActiveConstraints a(heldBy({{leaning(5), 1.001e-5}, {leaning(-5), 1e-5}}));
+  const ActiveConstraints b(heldBy({{leaning(-5), 1.001e-5}, {leaning(5), 1e-5}}));
+  EXPECT_LT((a.constrainedPart(Vec3::UnitX()) - b.constrainedPart(Vec3::UnitX())).norm(), 1e-4);
 }
 
 // The sides of a cleft of 10 degrees leave only its line.
-TEST(WallHold, WallsThatFaceEachOtherAreTwo) {
-  const WallHold hold(heldBy({{leaning(85), 1e-3}, {leaning(-85), 1e-3}}));
+TEST(ActiveConstraints, KeepFacingWallsSeparate) {
+  const ActiveConstraints hold(heldBy({{leaning(85), 1e-3}, {leaning(-85), 1e-3}}));
   ASSERT_EQ(hold.count(), 2);
-  EXPECT_LT((hold.across(Vec3(1, 2, 3)) - Vec3(1, 0, 3)).norm(), 1e-12);
+  EXPECT_LT((hold.constrainedPart(Vec3(1, 2, 3)) - Vec3(1, 0, 3)).norm(), 1e-12);
 }
 
-// K08: the damper takes off all that the spring gives, and no more.
-TEST(WallHold, TheDamperIsBoundedByWhatTheWallsBearTogether) {
+// K08: the damper takes at most the force of the spring.
+TEST(ActiveConstraints, DamperIsBoundedByTheLoadOfAllWalls) {
   const double load = 0.05e-3, stiffness = 1000;
   Contact contact = heldBy({{leaning(5), load}, {leaning(-5), load}});
   contact.normal = Vec3::UnitZ();
   contact.stiffness = stiffness;
   contact.force = stiffness * load * (leaning(5) + leaning(-5));
   contact.velocity = Vec3(0, 0, 0.1);
-  dampWalls(contact, 2, false);
+  dampConstrainedMotion(contact, 2, false);
   EXPECT_LT(contact.force.norm(), 1e-9);
 }
 

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <thread>
 
-#include "core/run_queue_wait.h"
-#include "haptics/servo/realtime.h"
+#include "haptics/device/realtime.h"
+#include "haptics/servo/run_delay.h"
 
 namespace patina {
 namespace {
@@ -23,7 +23,8 @@ void spinFor(std::int64_t ns) {
   }
 }
 
-// On the calling thread and those it starts; back to what was allowed before.
+// Restricts the calling thread and those it starts to one processor; the destructor restores the
+// set.
 class OneProcessor {
  public:
   OneProcessor() {
@@ -43,9 +44,9 @@ class OneProcessor {
   bool held_ = false;
 };
 
-TEST(RunQueueWait, IsTheTimeThatACompetitorHadTheProcessor) {
-  const RunQueueWait wait;
-  if (!wait.total()) GTEST_SKIP() << "this system keeps no account of it";
+TEST(RunDelay, EqualsTheProcessorTimeOfACompetitor) {
+  const RunDelay wait;
+  if (!wait.total()) GTEST_SKIP() << "this system does not account for it";
   const OneProcessor processor;
   ASSERT_TRUE(processor.held()) << "may not choose a processor";
   std::atomic<bool> done{false};
@@ -58,13 +59,13 @@ TEST(RunQueueWait, IsTheTimeThatACompetitorHadTheProcessor) {
   const std::int64_t waited = *wait.total() - before;
   done = true;
   competitor.join();
-  EXPECT_GT(waited, 80'000'000) << "half of it was the competitor's";
+  EXPECT_GT(waited, 80'000'000) << "half of the time belonged to the competitor";
   EXPECT_LT(waited, 400'000'000 + 100'000'000);
 }
 
-TEST(RunQueueWait, DoesNotCountSleep) {
-  const RunQueueWait wait;
-  if (!wait.total()) GTEST_SKIP() << "this system keeps no account of it";
+TEST(RunDelay, DoesNotCountSleep) {
+  const RunDelay wait;
+  if (!wait.total()) GTEST_SKIP() << "this system does not account for it";
   const std::int64_t before = *wait.total();
   const std::int64_t start = monotonicNs();
   std::this_thread::sleep_for(milliseconds(100));
@@ -81,7 +82,7 @@ TEST(Latency, CountsOneWakeUpAPeriod) {
   EXPECT_GT(latency.late_us.max, 0);
   EXPECT_LE(latency.late_us.p50, latency.late_us.p99);
   EXPECT_LE(latency.late_us.p99, latency.late_us.max);
-  EXPECT_EQ(latency.wait_us.has_value(), RunQueueWait().total().has_value());
+  EXPECT_EQ(latency.wait_us.has_value(), RunDelay().total().has_value());
   EXPECT_EQ(latency.timer_us.has_value(), latency.wait_us.has_value());
 }
 
@@ -92,10 +93,10 @@ TEST(Latency, RefusesTimesAndRatesOutOfRange) {
   EXPECT_THROW(measureLatency(1, 20000), std::invalid_argument);
 }
 
-// 4 ms of every 8 belong to a thread that goes first: half of the wake-ups wait for it, up to 4 ms,
-// and their lateness is that wait.
-TEST(MeasureLatency, TellsWaitingForAProcessorFromTheTimersLateness) {
-  if (!RunQueueWait().total()) GTEST_SKIP() << "this system keeps no account of the wait";
+// 4 ms of every 8 belong to a thread of higher priority: half of the wake-ups wait for it, up to 4
+// ms, and their lateness equals that wait.
+TEST(MeasureLatency, SeparatesProcessorWaitFromTimerLateness) {
+  if (!RunDelay().total()) GTEST_SKIP() << "this system does not account for the wait";
   const OneProcessor processor;
   ASSERT_TRUE(processor.held()) << "may not choose a processor";
   std::atomic<bool> done{false};

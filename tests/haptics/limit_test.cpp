@@ -1,5 +1,5 @@
 #include "haptics/contact_fixture.h"
-#include "haptics/stages/limit_stage.h"
+#include "haptics/law/limit_stage.h"
 #include "support/constants.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST(ForceLimit, KeepsTheDirection) {
   EXPECT_TRUE(was_limited);
 }
 
-// F13: the rate is never limited. An entry at 2 m/s has its whole force in every tick.
+// F13: the rate is never limited. An entry at 2 m/s has its full force in every tick.
 TEST(JumpFault, FastEntryIsNoFault) {
   for (const double speed : {0.1, 1.0, 2.0, 3.5}) {
     const auto snapshot = plane(500, 100);
@@ -64,7 +64,7 @@ TEST(JumpFault, FastEntryWithDampingIsNoFault) {
   }
 }
 
-// A slip that begins drops the force by (mu_s - mu_d) K d in one tick: friction, not a fault.
+// The onset of slip drops the force by (mu_s - mu_d) K d in one tick: friction, not a fault.
 TEST(JumpFault, BreakingLooseIsNoFault) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 1.0, 0.05), planeField());
   ContactMemory memory;
@@ -78,10 +78,10 @@ TEST(JumpFault, BreakingLooseIsNoFault) {
     largest = std::max(largest, (contact.force - last).norm());
     last = contact.force;
   }
-  EXPECT_GT(largest, 2 * kHandSpeed * 500 * kPeriod); // above what a fault would be without slip
+  EXPECT_GT(largest, 2 * kHandSpeed * 500 * kPeriod); // above the fault's limit without slip
 }
 
-// A teleport of 50 mm into contact: no force at first, then what is felt there, faded in.
+// A teleport of 50 mm into contact: no force at first, then the contact's force fades in.
 TEST(JumpFault, TeleportIntoContactFadesIn) {
   const auto snapshot = plane();
   ContactMemory memory;
@@ -129,7 +129,7 @@ TEST(JumpFault, MissedTickIsNoFault) {
   EXPECT_NEAR(contact.force.z(), 3.5, 1e-5);
   contact = tick(*snapshot, memory, Vec3(0, 0, -7.3e-3), kPeriod);
   EXPECT_FALSE(contact.fault);
-  // The same step within one period is one.
+  // The same step within one period is a fault.
   memory.reset();
   tick(*snapshot, memory, Vec3(0, 0, 1e-3), kPeriod);
   glide(*snapshot, memory, Vec3(0, 0, -1e-3), 0.3e-3);
@@ -150,7 +150,7 @@ TEST(JumpFault, SpeedScalesWithTheModel) {
 }
 
 // At the default K the scaled speed alone would allow 10 N a tick, three times the limit.
-TEST(JumpFault, FiresOnAModelOfAMetreToo) {
+TEST(JumpFault, FiresOnAModelOfAMetre) {
   Scene scene = sceneOf(500);
   scene.haptics.force_limit = 3.3;
   const auto snapshot = compileStages(scene, planeField(0x1p-6)); // 1 m
@@ -161,7 +161,7 @@ TEST(JumpFault, FiresOnAModelOfAMetreToo) {
     EXPECT_TRUE(contact.fault) << depth;
     EXPECT_EQ(contact.force, Vec3::Zero().eval());
   }
-  // Quicker than a hand and yet no fault: 3 m/s.
+  // 3 m/s is faster than a hand and yet no fault.
   ContactMemory memory;
   for (double z = 3e-3; z > -50e-3; z -= 3e-3) {
     const Contact contact = tick(*snapshot, memory, Vec3(0, 0, z), kPeriod);

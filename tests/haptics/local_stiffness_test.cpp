@@ -1,5 +1,5 @@
 // The closed forms of MATH 2.1.7, on analytic fields.
-#include "haptics/stability/local_stiffness.h"
+#include "haptics/stability/stability_map.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace patina {
 namespace {
 
 constexpr double kPlain = 500;              // [N/m]
-constexpr double kRounding = 3e-5 * kPlain; // see the step in local_stiffness.h
+constexpr double kRounding = 3e-5 * kPlain; // see the step in stability_map.h
 
 const Vec3 kOblique = Vec3(0.3, 0.5, 0.8).normalized();
 
@@ -25,7 +25,7 @@ Field bowlField(double radius, double voxel, int cells) {
   return cubeField([=](const Vec3& p) { return radius - p.norm(); }, voxel, cells);
 }
 
-TEST(LocalStiffness, OfAPlaneIsKAlongItsNormalAndNothingAcross) {
+TEST(LocalStiffness, IsKAlongAPlanesNormalAndZeroAcross) {
   const LocalStiffness at = stiffnessUnder(sceneOf(kPlain), planeField(), Vec3(1e-3, 2e-3, 1e-4));
   EXPECT_NEAR(at.depth, 1 / kPlain, 1e-12); // 1 N
   EXPECT_NEAR(at.force, 1, 1e-6);
@@ -37,10 +37,10 @@ TEST(LocalStiffness, OfAPlaneIsKAlongItsNormalAndNothingAcross) {
   EXPECT_LT((at.matrix - expected).cwiseAbs().maxCoeff(), kRounding);
 }
 
-TEST(LocalStiffness, NearTheSurfaceTheStepDoesNotLeaveContact) {
+TEST(LocalStiffness, StepStaysInContactNearTheSurface) {
   const double stiff = 1e6;
   const LocalStiffness at = stiffnessUnder(sceneOf(stiff), planeField(), Vec3(1e-3, 2e-3, 0));
-  EXPECT_NEAR(at.lambda_max, stiff, 1e-3 * stiff); // 1 um deep: the field's float is all there is
+  EXPECT_NEAR(at.lambda_max, stiff, 1e-3 * stiff); // 1 um deep: a float's accuracy
 }
 
 TEST(LocalStiffness, ConvexBodiesPushTheTipAside) {
@@ -65,7 +65,7 @@ TEST(LocalStiffness, ConcaveBodiesHoldTheTip) {
   EXPECT_NEAR(at.lambda_min, expected, 0.02 * expected);
 }
 
-TEST(LocalStiffness, OfAnOffsetSurfaceTakesTheDepthUnderIt) {
+TEST(LocalStiffness, UsesTheDepthUnderAnOffsetSurface) {
   const double radius = 0.03, offset = 2e-3, depth = 1e-3;
   Scene scene = sceneOf(kPlain);
   scene.haptics.offset = offset;
@@ -77,9 +77,9 @@ TEST(LocalStiffness, OfAnOffsetSurfaceTakesTheDepthUnderIt) {
   EXPECT_NEAR(at.lambda_min, expected, 0.02 * std::abs(expected));
 }
 
-// A ridge holds no tip: pressed in along the bisector it ends on one of the faces, and this is
-// said.
-TEST(LocalStiffness, OnARidgeTheTipSlipsOffToAFace) {
+// A ridge holds no tip: pressed in along the bisector it ends on one of the faces, and the result
+// marks this.
+TEST(LocalStiffness, ReportsThatTheTipSlipsOffARidge) {
   const double h = 0.5e-3;
   const Vec3 half = Vec3::Constant(0.0103);
   const Field field = cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64);
@@ -87,32 +87,32 @@ TEST(LocalStiffness, OnARidgeTheTipSlipsOffToAFace) {
   for (const double depth : {2.0, 4.0}) {
     const auto at = probe.at(Vec3(half.x(), half.y() - 0.1 * h, 1e-3), depth * h);
     ASSERT_TRUE(at);
-    EXPECT_TRUE(at->slips);
+    EXPECT_TRUE(at->is_unstable);
     EXPECT_NEAR(at->lambda_max, kPlain, 0.01 * kPlain);
     EXPECT_GT(at->normal.head<2>().maxCoeff(), 0.99);
   }
   const auto beside = probe.at(Vec3(half.x(), 1e-3, 1e-3), 2 * h);
   ASSERT_TRUE(beside);
-  EXPECT_FALSE(beside->slips);
+  EXPECT_FALSE(beside->is_unstable);
 }
 
-TEST(LocalStiffness, PastTheMiddleOfAThinPlateTheTipIsHeldAsInTheServo) {
+TEST(LocalStiffness, HoldsTheTipPastTheMiddleOfAThinPlateLikeTheServo) {
   Scene scene = sceneOf(kPlain);
   const LocalStiffness held = stiffnessUnder(scene, plateField(), Vec3(1e-4, 2e-4, 0.25e-3));
   EXPECT_NEAR(held.lambda_max, kPlain, 1e-3 * kPlain);
-  EXPECT_NEAR(held.force, 1, 1e-3); // 2 mm deep in 0.5 mm: from the side of entry
+  EXPECT_NEAR(held.force, 1, 1e-3); // 2 mm deep in 0.5 mm: on the side of entry
   EXPECT_GT(held.normal.z(), 0.999);
   scene.haptics.contact = HapticProperties::Contact::ray;
   EXPECT_FALSE(StiffnessProbe(scene, plateField()).at(Vec3(1e-4, 2e-4, 0.25e-3)));
 }
 
-TEST(LocalStiffness, NothingIsSaidWhereThereIsNoDirection) {
+TEST(LocalStiffness, IsAbsentWithoutADirection) {
   const StiffnessProbe probe(sceneOf(kPlain), sphereField());
   EXPECT_FALSE(probe.at(Vec3(0.1, 0.1, 0.1)));
   EXPECT_FALSE(probe.at(Vec3(0.03, NAN, 0)));
 }
 
-TEST(LocalStiffness, TimeAndPathLeaveNoTrace) {
+TEST(LocalStiffness, DoesNotDependOnTimeAndPath) {
   Scene scene = withFriction(sceneOf(kPlain), 0.5, 0.4);
   scene.haptics.damping = 2;
   scene.haptics.force_limit = 0.5;
@@ -123,15 +123,15 @@ TEST(LocalStiffness, TimeAndPathLeaveNoTrace) {
   EXPECT_NEAR(stiffnessUnder(scene, sphereField(), point).force, 0.5, 1e-4);
 }
 
-// Whatever is painted, it is pressed by 1 N and felt beneath the relief.
-TEST(LocalStiffness, PaintedStiffnessIsPressedByTheSameForce) {
+// Painted stiffness of any value is pressed by 1 N and felt beneath the relief.
+TEST(LocalStiffness, PressesPaintedStiffnessByTheSameForce) {
   const double voxel = 0x1p-11;
   for (const double painted : {250.0, 2000.0}) {
     const Scene scene = sceneOf(kPlain);
-    const FeltObject object =
-        feltMaterial(*coveredMap(voxel, cube(4e-3), MaterialChannel::stiffness,
-                                 [=](const Vec3&) { return painted; }),
-                     scene);
+    const HapticObject object =
+        hapticMaterial(*coveredMap(voxel, cube(4e-3), MaterialChannel::stiffness,
+                                   [=](const Vec3&) { return painted; }),
+                       scene);
     const auto at =
         StiffnessProbe(scene, planeField(voxel, 32), std::span(&object, 1)).at(Vec3(1e-3, 5e-4, 0));
     ASSERT_TRUE(at);
@@ -141,11 +141,11 @@ TEST(LocalStiffness, PaintedStiffnessIsPressedByTheSameForce) {
   }
 }
 
-TEST(LocalStiffness, OnARampOfReliefTheDepthIsBeneathTheRamp) {
+TEST(LocalStiffness, MeasuresTheDepthBeneathARampOfRelief) {
   const double slope = 0.5, x = 1.3e-3, depth = 0.5e-3;
-  const FeltObject ramp =
-      feltRelief(fineSlab().faces, reliefImage(64, [](double u, double) { return u - 0.5; }),
-                 slope * Slab::kSide, 0.1);
+  const HapticObject ramp =
+      hapticRelief(fineSlab().faces, reliefImage(64, [](double u, double) { return u - 0.5; }),
+                   slope * Slab::kSide, 0.1);
   Scene scene = sceneOf(kPlain);
   scene.relief.form = ForceForm::conservative;
   const auto at =

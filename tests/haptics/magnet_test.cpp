@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/devices/exact_step.h"
+#include "haptics/loop_model/zoh_integrator.h"
 
 namespace patina {
 namespace {
@@ -32,8 +32,8 @@ TEST(Magnet, ForceProfileIsExactOverAPlane) {
   }
 }
 
-// T-K13b and c: the pull-off peak and its work; coming back gives it all again.
-TEST(Magnet, PullOffTakesItsClosedFormAndGivesItBack) {
+// T-K13b and c: the pull-off peak and its work; coming back returns the work.
+TEST(Magnet, PullOffWorkMatchesTheClosedFormAndIsReturned) {
   const double R = 0.03, k_m = 400, w = 2e-3, step = 1e-6;
   const auto snapshot = compileStages(magnetic(500, w, k_m), sphereField(R));
   const Vec3 n = Vec3(1, 2, 2) / 3;
@@ -55,7 +55,7 @@ TEST(Magnet, PullOffTakesItsClosedFormAndGivesItBack) {
   EXPECT_NEAR(peak / (k_m * w), 1, 2e-3);
   EXPECT_NEAR(out / (0.5 * k_m * w * w), 1, 2e-3);
   EXPECT_NEAR(back, out, 1e-3 * out);
-  EXPECT_FALSE(memory.limit.fault); // the step at the band's edge is the model's own
+  EXPECT_FALSE(memory.limit.fault); // the step at the band's edge belongs to the model
 }
 
 // T-K13c: quasi-static loops of radius 0.7 mm inside the band.
@@ -89,7 +89,7 @@ TEST(Magnet, ClosedLoopsDoNoWork) {
 double amplitudeRatio(double K, double k_m, double m, double b, double T) {
   const double w = 4e-3;
   const auto snapshot = compileStages(magnetic(K, w, k_m), planeField(0x1p-10));
-  const HeldStep step = heldStep({m, b, 0, 0}, T);
+  const ZohStep step = zohStep({m, b, 0, 0}, T);
   double x = 0.5 * w, v = 0;
   ContactMemory memory;
   std::vector<double> peaks;
@@ -110,7 +110,7 @@ double amplitudeRatio(double K, double k_m, double m, double b, double T) {
   return std::pow(peaks.back() / peaks.front(), 1.0 / static_cast<double>(cycles));
 }
 
-TEST(Magnet, AFreeDeviceSwingsAsTwoSpringsPredict) {
+TEST(Magnet, FreeDeviceSwingsLikeOnTwoSprings) {
   const double m = 0.1, b = 0.5, T = 0.5e-3;
   for (const auto& [k_m, K] : {std::pair(500.0, 1500.0), std::pair(3000.0, 1500.0)}) {
     double sum = 0;
@@ -120,7 +120,7 @@ TEST(Magnet, AFreeDeviceSwingsAsTwoSpringsPredict) {
   }
 }
 
-// K08: elsewhere the surface never pulls on retreat; a magnet may.
+// K08: without a magnet the surface never pulls on retreat; a magnet may.
 TEST(Magnet, DampingPullsOnRetreat) {
   for (const bool magnet : {false, true}) {
     Scene scene = magnet ? magnetic(300, 2e-3, 300) : sceneOf(300);
@@ -136,7 +136,7 @@ TEST(Magnet, DampingPullsOnRetreat) {
 }
 
 // MATH 2.8: a groove, where two points are equally near.
-TEST(Magnet, InAGrooveTheForceIsContinuous) {
+TEST(Magnet, ForceIsContinuousInAGroove) {
   const double k_m = 400, w = 2e-3, half = 1e-3, voxel = 0.1e-3;
   const Field groove =
       cubeField([=](const Vec3& p) { return half - std::abs(p.x()); }, voxel, 80, 30);
@@ -146,13 +146,13 @@ TEST(Magnet, InAGrooveTheForceIsContinuous) {
   for (double x = -0.95e-3 + step; x < 0.95e-3; x += step) {
     const Vec3 force = touchOnce(*snapshot, Vec3(x, 0, 0)).force;
     ASSERT_TRUE(force.allFinite());
-    // From wall to wall the pull turns round within two cells.
+    // The pull reverses from wall to wall within two cells.
     ASSERT_LT((force - last).norm(), 3 * k_m * half * step / voxel) << x;
     last = force;
   }
 }
 
-TEST(Magnet, WithoutRangeOrStrengthIsLeftOut) {
+TEST(Magnet, IsLeftOutWithoutRangeOrStrength) {
   const Field sphere = sphereField(0.03, 60);
   EXPECT_EQ(compileStages(magnetic(500, 0, 300), sphere)->stages.size(), 3u);
   EXPECT_EQ(compileStages(magnetic(500, 2e-3, 0), sphere)->stages.size(), 3u);

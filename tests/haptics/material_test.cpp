@@ -1,17 +1,17 @@
-// Painted material as it is felt: T-K22a to e, F6.
+// Rendering of painted material: T-K22a to e, F6.
 #include <cstdio>
 
 #include <gtest/gtest.h>
 
+#include "haptics/law/painted_range.h"
+#include "haptics/law/relief_stage.h"
 #include "haptics/painted_fixture.h"
 #include "haptics/servo/cross_fade.h"
-#include "haptics/stability/painted_range.h"
-#include "haptics/stages/relief_stage.h"
 
 namespace patina {
 namespace {
 
-constexpr double kVoxel = 0x1p-11; // of the plane's field and of the map
+constexpr double kVoxel = 0x1p-11; // voxel of the plane's field and of the map [m]
 
 std::vector<std::string> names(const HapticSnapshot& snapshot) {
   std::vector<std::string> result;
@@ -21,22 +21,22 @@ std::vector<std::string> names(const HapticSnapshot& snapshot) {
 using Names = std::vector<std::string>;
 
 // K1 for x < 0, K2 for x > 0 and the plane between within one cell.
-FeltObject half(const Scene& scene, double k1, double k2) {
-  return feltMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::stiffness,
-                                  [=](const Vec3& p) { return p.x() > 0 ? k2 : k1; }),
-                      scene);
+HapticObject half(const Scene& scene, double k1, double k2) {
+  return hapticMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::stiffness,
+                                    [=](const Vec3& p) { return p.x() > 0 ? k2 : k1; }),
+                        scene);
 }
 
-std::shared_ptr<const HapticSnapshot> compiledWith(const Scene& scene, const FeltObject& object,
+std::shared_ptr<const HapticSnapshot> compiledWith(const Scene& scene, const HapticObject& object,
                                                    const Field& field = planeField(kVoxel)) {
   return compileStages(scene, field, std::span(&object, 1));
 }
 
-TEST(Material, IsAStageOnlyWhereSomethingIsPainted) {
+TEST(Material, IsAStageOnlyIfPainted) {
   Scene scene = sceneOf(500);
-  const FeltObject nothing;
+  const HapticObject nothing;
   EXPECT_EQ(names(*compiledWith(scene, nothing)), (Names{"contact", "spring", "limit"}));
-  const FeltObject stiff = half(scene, 200, 1000);
+  const HapticObject stiff = half(scene, 200, 1000);
   const auto snapshot = compiledWith(scene, stiff);
   EXPECT_EQ(names(*snapshot), (Names{"contact", "material", "spring", "stiffness slope", "limit"}));
   EXPECT_EQ(snapshot->why[1].why, "stiffness painted");
@@ -44,9 +44,9 @@ TEST(Material, IsAStageOnlyWhereSomethingIsPainted) {
   scene.material_form = ForceForm::literal;
   EXPECT_EQ(names(*compiledWith(scene, stiff)), (Names{"contact", "material", "spring", "limit"}));
   const auto painted = [&](MaterialChannel channel) {
-    return names(*compiledWith(scene, feltMaterial(*coveredMap(kVoxel, cube(2e-3), channel,
-                                                               [](const Vec3&) { return 0.25; }),
-                                                   scene)));
+    return names(*compiledWith(scene, hapticMaterial(*coveredMap(kVoxel, cube(2e-3), channel,
+                                                                 [](const Vec3&) { return 0.25; }),
+                                                     scene)));
   };
   EXPECT_EQ(painted(MaterialChannel::static_friction),
             (Names{"contact", "material", "friction", "spring", "limit"}));
@@ -54,8 +54,8 @@ TEST(Material, IsAStageOnlyWhereSomethingIsPainted) {
             (Names{"contact", "material", "spring", "damping", "limit"}));
 }
 
-// What the band must hold is known from the scene alone.
-TEST(Material, RoughnessReachesAsFarFromTheSceneAsFromItsSamples) {
+// The range that the band must cover follows from the scene alone.
+TEST(Material, RoughnessRangeIsTheSameFromSceneAndSamples) {
   Scene scene = sceneOf(500);
   const auto map = coveredMap(kVoxel, cube(2e-3), MaterialChannel::roughness,
                               [](const Vec3& p) { return p.x() > 0 ? 0x1p-13 : 0x1p-14; });
@@ -64,23 +64,23 @@ TEST(Material, RoughnessReachesAsFarFromTheSceneAsFromItsSamples) {
   paint.material = map;
   scene.objects.emplace_back();
   scene.objects.back().paint = std::make_shared<const ObjectPaint>(paint);
-  const FeltObject object = feltMaterial(*map, scene);
+  const HapticObject object = hapticMaterial(*map, scene);
   EXPECT_DOUBLE_EQ(roughnessPeak(scene), kRoughnessPeak * 0x1p-13);
-  EXPECT_DOUBLE_EQ(raisedBy(std::span(&object, 1)), kRoughnessPeak * 0x1p-13);
+  EXPECT_DOUBLE_EQ(reliefOver(std::span(&object, 1)), kRoughnessPeak * 0x1p-13);
   scene.haptics.tip_radius = 1e-3;
-  EXPECT_DOUBLE_EQ(feltReach(scene.haptics, 2e-3).length(), 3e-3);
+  EXPECT_DOUBLE_EQ(interactionRange(scene.haptics, 2e-3).length(), 3e-3);
 }
 
-TEST(Material, AnOwnerIsLookedUpOnlyAmongSeveralObjects) {
+TEST(Material, FindsTheOwnerOnlyAmongSeveralObjects) {
   const Scene scene = sceneOf(500);
-  std::vector<FeltObject> objects{half(scene, 200, 1000), FeltObject{}};
+  std::vector<HapticObject> objects{half(scene, 200, 1000), HapticObject{}};
   objects[1].first_face = 10;
   EXPECT_EQ(names(*compileStages(scene, planeField(kVoxel), objects)),
             (Names{"contact", "owner", "material", "spring", "stiffness slope", "limit"}));
 }
 
-// T-K22b: what was painted is what is felt, on a cell that paint covers.
-TEST(Material, IsFeltAsItWasPainted) {
+// T-K22b: the painted value is rendered on a fully covered cell.
+TEST(Material, RendersThePaintedValue) {
   Scene scene = sceneOf(500);
   const Box3 spot = cube(4e-3);
   auto map =
@@ -91,7 +91,7 @@ TEST(Material, IsFeltAsItWasPainted) {
       kVoxel, spot, MaterialChannel::dynamic_friction, [](const Vec3&) { return 0.35; }, map);
   coveredMap(
       kVoxel, spot, MaterialChannel::damping, [](const Vec3&) { return 2.0; }, map);
-  const auto snapshot = compiledWith(scene, feltMaterial(*map, scene));
+  const auto snapshot = compiledWith(scene, hapticMaterial(*map, scene));
   const double d = 1e-3;
   EXPECT_NEAR(touchOnce(*snapshot, Vec3(1e-4, 2e-4, -d)).force.z() / d, 1234.5, 1e-2);
   EXPECT_NEAR(touchOnce(*snapshot, Vec3(9e-3, 2e-4, -d)).force.z() / d, 500, 1e-2);
@@ -129,7 +129,7 @@ TEST(Material, OnlyTheLiteralFormDoesWorkRoundALoop) {
   Scene scene = sceneOf(500);
   const double k1 = 200, k2 = 1000, d = 1.5e-3;
   const double theory = 0.5 * (k2 - k1) * d * d;
-  const FeltObject object = half(scene, k1, k2);
+  const HapticObject object = half(scene, k1, k2);
   const std::vector<Vec3> path{Vec3(-2e-3, 1e-4, -d), Vec3(2e-3, 1.3e-4, -d),
                                Vec3(2e-3, 1e-4, 1e-3), Vec3(-2e-3, 1e-4, 1e-3)};
   for (const double offset : {0.0, 0.8e-3}) {
@@ -147,16 +147,16 @@ TEST(Material, OnlyTheLiteralFormDoesWorkRoundALoop) {
   }
 }
 
-// The same on a sphere, where the closest point moves farther or less far than the tip.
-TEST(Material, TheConservativeFormPullsTheGradientThroughTheClosestPoint) {
+// On a sphere the same holds, where the closest point moves farther or less far than the tip.
+TEST(Material, ConservativeFormPullsTheGradientBackThroughTheClosestPoint) {
   Scene scene = sceneOf(500);
   scene.haptics.offset = 2e-3;
   const double R = 0.012;
   const Field sphere = cubeField([=](const Vec3& p) { return p.norm() - R; }, 0.25e-3, 160, 16);
-  const FeltObject object =
-      feltMaterial(*coveredMap(0.5e-3, cube(0.016), MaterialChannel::stiffness,
-                               [](const Vec3& p) { return 600 + 4e4 * p.x(); }),
-                   scene);
+  const HapticObject object =
+      hapticMaterial(*coveredMap(0.5e-3, cube(0.016), MaterialChannel::stiffness,
+                                 [](const Vec3& p) { return 600 + 4e4 * p.x(); }),
+                     scene);
   const auto at = [&](double angle, double r) {
     return Vec3(r * std::sin(angle), 1e-4, r * std::cos(angle));
   };
@@ -179,20 +179,20 @@ TEST(Material, TheConservativeFormPullsTheGradientThroughTheClosestPoint) {
 }
 
 // K12, K23: material is that of the closest point on the original surface.
-TEST(Material, OverAnOffsetIsThatOfTheSurfaceBelow) {
+TEST(Material, UsesTheSurfaceBelowAnOffset) {
   Scene scene = sceneOf(500);
   scene.haptics.offset = 2e-3;
-  const FeltObject spot =
-      feltMaterial(*coveredMap(kVoxel, Box3(Vec3(-4e-3, -4e-3, -1e-3), Vec3(4e-3, 4e-3, 1e-3)),
-                               MaterialChannel::stiffness, [](const Vec3&) { return 900; }),
-                   scene);
+  const HapticObject spot =
+      hapticMaterial(*coveredMap(kVoxel, Box3(Vec3(-4e-3, -4e-3, -1e-3), Vec3(4e-3, 4e-3, 1e-3)),
+                                 MaterialChannel::stiffness, [](const Vec3&) { return 900; }),
+                     scene);
   EXPECT_NEAR(touchOnce(*compiledWith(scene, spot), Vec3(1e-4, 0, 1e-3)).force.z(), 0.9, 1e-5);
 }
 
 // The painted object is turned and moved; its map lies in its own frame.
-TEST(Material, GoesWithItsObject) {
+TEST(Material, MovesWithItsObject) {
   Scene scene = sceneOf(500);
-  FeltObject object = half(scene, 200, 1000);
+  HapticObject object = half(scene, 200, 1000);
   Pose world_from_object = Pose::Identity();
   world_from_object.translate(Vec3(2e-3, 1e-3, 0))
       .rotate(Eigen::AngleAxisd(0.5 * std::acos(-1.0), Vec3::UnitZ()));
@@ -207,14 +207,14 @@ TEST(Material, GoesWithItsObject) {
 }
 
 // Unpainted places of a painted scene give the bits of the unpainted scene.
-TEST(Material, WhereNothingIsPaintedNothingChanges) {
+TEST(Material, ChangesNothingOnUnpaintedPlaces) {
   Scene scene = withFriction(sceneOf(517.3), 0.5, 0.3);
   scene.haptics.damping = 1.1;
   const Field sphere = sphereField();
-  const FeltObject spot =
-      feltMaterial(*coveredMap(0.45e-3, Box3(Vec3(0.02, -0.01, -0.01), Vec3(0.03, 0.01, 0.01)),
-                               MaterialChannel::stiffness, [](const Vec3&) { return 517.3F; }),
-                   scene);
+  const HapticObject spot =
+      hapticMaterial(*coveredMap(0.45e-3, Box3(Vec3(0.02, -0.01, -0.01), Vec3(0.03, 0.01, 0.01)),
+                                 MaterialChannel::stiffness, [](const Vec3&) { return 517.3F; }),
+                     scene);
   const auto plain = compileStages(scene, sphere), painted = compiledWith(scene, spot, sphere);
   ContactMemory a, b;
   std::mt19937 random(4);
@@ -242,18 +242,18 @@ TEST(Material, EditsUnderAPressedTipRamp) {
         kVoxel, dab, MaterialChannel::stiffness, [=](const Vec3&) { return k; }, map);
     coveredMap(
         kVoxel, dab, MaterialChannel::static_friction, [=](const Vec3&) { return mu; }, map);
-    versions.push_back(compiledWith(scene, feltMaterial(*map, scene), plane));
+    versions.push_back(compiledWith(scene, hapticMaterial(*map, scene), plane));
   }
   CrossFade law;
   const auto first = compileStages(scene, plane);
-  law.turnTo(first.get());
+  law.fadeTo(first.get());
   Vec3 tip(-1e-3, 0, 1e-3);
   for (int i = 0; i < 100; ++i) law.tick(tip += Vec3(1e-5, 0, -2.5e-5), 1e-3);
   Vec3 last = law.tick(tip, 1e-3).force;
   std::size_t next = 0;
   double worst = 0;
   for (int i = 0; next < versions.size(); ++i) {
-    if (i % 33 == 0 && !law.fading()) law.turnTo(versions[next++].get());
+    if (i % 33 == 0 && !law.fading()) law.fadeTo(versions[next++].get());
     const Contact contact = law.tick(tip, 1e-3);
     ASSERT_FALSE(contact.fault);
     worst = std::max(worst, (contact.force - last).norm());

@@ -1,20 +1,20 @@
-// A scene's law with every stage it does without, at its neutral value.
+// A scene's law with every stage that the scene does not need, at its neutral value.
 #pragma once
 
 #include <map>
 #include <string_view>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/stages/friction_stage.h"
-#include "haptics/stages/lateral_stage.h"
-#include "haptics/stages/magnet_stage.h"
-#include "haptics/stages/material_stage.h"
-#include "haptics/stages/relief_stage.h"
-#include "haptics/stages/spring_stage.h"
+#include "haptics/law/friction_stage.h"
+#include "haptics/law/lateral_stage.h"
+#include "haptics/law/magnet_stage.h"
+#include "haptics/law/material_stage.h"
+#include "haptics/law/relief_stage.h"
+#include "haptics/law/spring_stage.h"
 
 namespace patina {
 
-// A stage of another snapshot, which it keeps.
+// Forwards to a stage of another snapshot, which it keeps alive.
 class BorrowedStage final : public ForceStage {
  public:
   BorrowedStage(std::shared_ptr<const HapticSnapshot> from, std::size_t index)
@@ -31,13 +31,13 @@ class BorrowedStage final : public ForceStage {
 // A coupling is spring and damping in one; a cut-off, an offset, an owner and a passivity
 // controller have no neutral value.
 inline std::shared_ptr<const HapticSnapshot>
-withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltObject> felt = {}) {
+withNeutralStages(const Scene& scene, const Field& field, std::span<const HapticObject> felt = {}) {
   const auto pruned = compileStages(scene, field, felt);
   auto full = std::make_shared<HapticSnapshot>();
   full->field = field;
   full->objects.assign(felt.begin(), felt.end());
   full->base = pruned->base;
-  const std::span<const FeltObject> objects = full->objects;
+  const std::span<const HapticObject> objects = full->objects;
   const FieldSampler sampler(*field, scene.sampler);
   const auto reliefs = std::make_shared<const Reliefs>(sampler, objects);
   const ForceForm form = scene.relief.form;
@@ -46,15 +46,15 @@ withNeutralStages(const Scene& scene, const Field& field, std::span<const FeltOb
   neutral["material"] = std::make_unique<MaterialStage>(objects, false);
   neutral["texture stiffness"] = std::make_unique<TextureStiffnessStage>(reliefs, false);
   neutral["lateral coupling"] =
-      std::make_unique<LateralStage>(reliefs, objects, raisedBy(felt), LateralPlan{});
+      std::make_unique<LateralStage>(reliefs, objects, reliefOver(felt), LateralPlan{});
   neutral["relief"] = std::make_unique<ReliefStage>(reliefs, 0, form);
   neutral["roughness"] = std::make_unique<RoughnessStage>(sampler, objects, 0, form);
   neutral["friction"] = std::make_unique<FrictionStage>(sampler, radius, Friction{}, false);
   neutral["magnet"] = std::make_unique<MagnetStage>(sampler, radius, Magnet{}, MagnetRelief{}, 0);
   if (!pruned->stabilisers.coupling) neutral["damping"] = std::make_unique<DampingStage>();
-  neutral["stiffness slope"] = std::make_unique<StiffnessSlopeStage>(sampler);
+  neutral["stiffness slope"] = std::make_unique<StiffnessGradientStage>(sampler);
 
-  // The order of compileStages() and addForceLaw().
+  // The stages have the order of compileStages() and addForceLaw().
   std::vector<const char*> order = {"contact", "offset", "owner"};
   const auto then = [&](std::initializer_list<const char*> names) {
     order.insert(order.end(), names);

@@ -14,7 +14,7 @@ Scene offsetScene(double stiffness, double offset, bool proxy = true) {
 }
 
 // T-K12a: radial, K (delta - (r - R)), from the offset surface down into the sphere.
-TEST(Offset, OnASphereIsTheClosedForm) {
+TEST(Offset, MatchesTheClosedFormOnASphere) {
   const double K = 1000, R = 0.03, delta = 1.5e-3;
   const Field sphere = sphereField(R); // h = 0.45 mm
   const auto snapshot = compileStages(offsetScene(K, delta), sphere);
@@ -28,14 +28,14 @@ TEST(Offset, OnASphereIsTheClosedForm) {
       EXPECT_NEAR(contact.force.norm(), expected, K * h * h / (4 * R)) << above;
       if (expected < 0.01) continue;
       EXPECT_LT((contact.force / contact.force.norm() - n).norm(), 1e-4);
-      // T-K12d: what is seen and edited lies on the model itself.
+      // T-K12d: the visible and editable point lies on the model itself.
       EXPECT_NEAR(contact.surface.norm(), R, h * h / (4 * R));
       EXPECT_NEAR((contact.vcp - contact.surface).norm(), delta, 2 * h * h / (4 * R));
     }
   }
 }
 
-TEST(Offset, WithAFiniteTipTheSurfacePointStaysOnTheModel) {
+TEST(Offset, SurfacePointStaysOnTheModelWithAFiniteTip) {
   Scene scene = offsetScene(1000, 1e-3);
   scene.haptics.tip_radius = 0.5e-3;
   const auto snapshot = compileStages(scene, sphereField());
@@ -73,7 +73,7 @@ Push pushThrough(double thickness, double offset, bool proxy) {
   return push;
 }
 
-TEST(Offset, APlatePushedThroughResistsAsItsClosedForm) {
+TEST(Offset, PushedPlateResistsLikeTheClosedForm) {
   const double K = 1000;
   for (const double t : {0.5e-3, 1e-3}) {
     for (const double delta : {0.0, 0.2e-3, 0.5e-3}) {
@@ -82,7 +82,7 @@ TEST(Offset, APlatePushedThroughResistsAsItsClosedForm) {
         const double reach = delta + 0.5 * t;
         EXPECT_NEAR(push.middle / (K * reach), 1, 0.01) << t << ' ' << delta;
         EXPECT_NEAR(push.work / (0.5 * K * reach * reach), 1, 0.01) << t << ' ' << delta;
-        // As in the paper the force turns round there; the proxy keeps its side.
+        // The paper's force reverses there; the proxy keeps its side.
         EXPECT_EQ(push.beyond > 0, proxy) << t << ' ' << delta;
         EXPECT_NEAR(std::abs(push.beyond) / (K * reach), 1, 0.13) << t << ' ' << delta;
       }
@@ -90,8 +90,8 @@ TEST(Offset, APlatePushedThroughResistsAsItsClosedForm) {
   }
 }
 
-// T-K12c: a tip that is guided down over a dent of radius rho < delta is held at
-// sqrt(delta^2 - rho^2) above the plane, which it would otherwise pass.
+// T-K12c: a tip that is guided down over a dent of radius rho < delta is held at sqrt(delta^2 -
+// rho^2) above the plane, and would otherwise pass the plane.
 TEST(Offset, BridgesADentNarrowerThanItself) {
   const double rho = 2e-3, delta = 2.5e-3, voxel = 0.1e-3;
   const Field dent = cubeField(
@@ -106,19 +106,19 @@ TEST(Offset, BridgesADentNarrowerThanItself) {
   const double lowest = std::sqrt(delta * delta - rho * rho);
   EXPECT_FALSE(touchOnce(*snapshot, Vec3(0, 0, lowest + voxel)).touching);
   EXPECT_TRUE(touchOnce(*snapshot, Vec3(0, 0, lowest - voxel)).touching);
-  // Without an offset the tip falls to the bottom of the dent.
+  // The tip without an offset falls to the bottom of the dent.
   const auto plain = compileStages(sceneOf(1000), dent);
   EXPECT_FALSE(touchOnce(*plain, Vec3(0, 0, -rho + voxel)).touching);
 }
 
 // MATH 2.8: an offset below a voxel, and one wider than the gap between two parts.
-TEST(Offset, SmallerThanAVoxelIsStillFelt) {
+TEST(Offset, ActsIfSmallerThanAVoxel) {
   const Field sphere = sphereField(); // h = 0.45 mm
   const auto snapshot = compileStages(offsetScene(1000, 20e-6), sphere);
   EXPECT_NEAR(touchOnce(*snapshot, Vec3(0, 0, 0.03)).force.z(), 0.02, 1e-4);
 }
 
-TEST(Offset, WiderThanAGapBetweenPartsStaysFiniteAndBounded) {
+TEST(Offset, StaysFiniteAndBoundedIfWiderThanAGap) {
   const double gap = 2e-3, delta = 1.5e-3;
   const Field walls =
       cubeField([=](const Vec3& p) { return 0.5 * gap - std::abs(p.x()); }, 0.1e-3, 80, 30);
@@ -129,13 +129,13 @@ TEST(Offset, WiderThanAGapBetweenPartsStaysFiniteAndBounded) {
       const Contact contact = tick(*snapshot, memory, Vec3(x, 0, 1e-4), 1e-3);
       ASSERT_TRUE(contact.force.allFinite());
       ASSERT_LE(contact.force.norm(), 1000 * (delta + gap)) << x;
-      // The offset leaves no place free, so that a proxy has none to be.
+      // The offset leaves no free place for a proxy.
       ASSERT_EQ(contact.touching || contact.fault, !proxy) << x;
     }
   }
 }
 
-TEST(Offset, OutsideTheBandIsRefusedWithTheRemedy) {
+TEST(Offset, IsRefusedOutsideTheBandWithTheRemedy) {
   try {
     compileStages(offsetScene(500, 5e-3), sphereField()); // h = 0.45 mm, band 8
     FAIL() << "accepted";
@@ -145,7 +145,7 @@ TEST(Offset, OutsideTheBandIsRefusedWithTheRemedy) {
   }
 }
 
-TEST(Offset, OfZeroIsLeftOut) {
+TEST(Offset, IsLeftOutIfZero) {
   const Field sphere = sphereField(0.03, 60);
   EXPECT_EQ(compileStages(offsetScene(500, 0), sphere)->stages.size(), 3u);
   EXPECT_EQ(compileStages(offsetScene(500, 1e-3), sphere)->stages.size(), 4u);

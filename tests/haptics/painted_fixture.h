@@ -1,4 +1,4 @@
-// What is painted, as felt, for the tests of it.
+// Painted layers as the stages render them, for tests.
 #pragma once
 
 #include "haptics/contact_fixture.h"
@@ -9,8 +9,8 @@ namespace patina {
 
 using test::reliefImage;
 
-inline FeltObject feltMaterial(const MaterialMap& map, const Scene& scene) {
-  FeltObject object;
+inline HapticObject hapticMaterial(const MaterialMap& map, const Scene& scene) {
+  HapticObject object;
   object.material = materialSamples(map, baseMaterial(scene.haptics), nullptr, nullptr);
   return object;
 }
@@ -36,10 +36,10 @@ inline double loopWork(const HapticSnapshot& snapshot, const std::vector<Vec3>& 
   return work;
 }
 
-inline FeltObject feltRelief(std::shared_ptr<const ReliefFaces> faces,
-                             std::shared_ptr<const TiledImage> image, double height,
-                             double greatest = 1) {
-  FeltObject object;
+inline HapticObject hapticRelief(std::shared_ptr<const ReliefFaces> faces,
+                                 std::shared_ptr<const TiledImage> image, double height,
+                                 double greatest = 1) {
+  HapticObject object;
   object.relief = reliefOn(std::move(faces), std::move(image), height);
   object.highest = std::abs(height) * greatest;
   return object;

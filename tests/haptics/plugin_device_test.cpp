@@ -1,6 +1,6 @@
-// Devices behind plug-ins: what is loaded and what is refused, and that no fault of a plug-in
-// leaves a force behind or stops the loop.
-#include "haptics/devices/plugin/plugin_device.h"
+// Plug-in devices: libraries that load or are refused, and no fault of a plug-in leaves a force
+// behind or stops the loop.
+#include "haptics/plugin/plugin_device.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,16 @@
 #include <cstdlib>
 #include <fstream>
 #include <pthread.h>
+#include <random>
 #include <thread>
 
 #include "core/error.h"
-#include "haptics/devices/plugin/plugin_library.h"
+#include "core/file.h"
+#include "haptics/catalog/device_catalog.h"
+#include "haptics/device/realtime.h"
 #include "haptics/faulty_plugin.h"
-#include "haptics/servo/realtime.h"
+#include "haptics/plugin/plugin_abi.h"
+#include "haptics/plugin/plugin_library.h"
 #include "support/constants.h"
 #include "support/fresh_folder.h"
 #include "support/places.h"
@@ -43,8 +47,8 @@ bool has(const std::string& text, const char* part) {
   return text.find(part) != std::string::npos;
 }
 
-// The test's own thread as a servo's. Given back: its children would have it, too, and one that
-// spins would let nobody else run on one processor.
+// Gives the test's own thread a servo's priority and takes it back: its children would inherit it,
+// and a spinning one would block all others on one processor.
 struct Realtime {
   Realtime() { requestRealtime(); }
   ~Realtime() {
@@ -55,31 +59,31 @@ struct Realtime {
   Realtime& operator=(const Realtime&) = delete;
 };
 
-// What a servo does, with a law of what it feels.
+// Exchanges like a servo, with a law that computes the force from the state.
 struct Loop {
   Realtime realtime;
-  std::unique_ptr<Device> device = makeFaulty("", std::make_shared<LinkNotes>());
+  std::unique_ptr<Device> device = makeFaulty("", std::make_shared<LinkStatistics>());
   double stiffness = 0, friction = 0; // free, in contact, in a stroke
   DeviceState state;
   Vec3 force = Vec3::Zero();
-  double most_age = 0; // of a state that was felt [s]
+  double max_age = 0; // largest age of a state that counted [s]
 
   void tick(int count) {
     for (int i = 0; i < count; ++i) {
       std::this_thread::sleep_for(std::chrono::microseconds(900));
       state = device->exchange(force, kPeriod);
-      const bool felt = judge(state) == DeviceStatus::ok;
+      const bool felt = effectiveStatus(state) == DeviceStatus::ok;
       force = felt ? Vec3(friction, 0, stiffness * state.position.z()) : Vec3(Vec3::Zero());
-      if (felt) most_age = std::max(most_age, state.age);
+      if (felt) max_age = std::max(max_age, state.age);
     }
   }
-  // Whether the force fades in, however busy the machine is: a late tick begins the fade anew.
+  // Returns whether the force fades in, however busy the machine is: a late tick restarts the fade.
   bool settles() {
     const double full = std::hypot(friction, stiffness * 3e-3);
     for (int i = 0; i < 60; ++i) {
       tick(100);
       const int last = std::min(faulty.calls.load(), 20000) - 1;
-      if (judge(state) == DeviceStatus::ok && last >= 0 &&
+      if (effectiveStatus(state) == DeviceStatus::ok && last >= 0 &&
           std::abs(faulty.noted[static_cast<std::size_t>(last)].force - full) < 1e-9)
         return true;
     }
@@ -96,7 +100,29 @@ std::size_t firstWith(Fault fault) {
 
 const std::pair<double, double> kLaws[] = {{0, 0}, {400, 0}, {400, 0.3}};
 
-TEST(PluginDevice, CarriesForceAndStateOfTheExample) {
+class PluginLibraries : public testing::Test {
+ protected:
+  PluginLibraries() {
+    folder_ = test::trustedFolder("plugins");
+    ::setenv("PATINA_DEVICES", folder_.c_str(), 1);
+  }
+  ~PluginLibraries() override {
+    ::unsetenv("PATINA_DEVICES");
+    std::filesystem::remove_all(folder_);
+  }
+  std::string causeOfLoading(const char* name) {
+    return causeOf([&] { (void)loadedPlugin(name); });
+  }
+  // Copies a built library to where it is found first.
+  void put(const char* from, const char* name) {
+    std::filesystem::copy_file(test::programFolder() / from,
+                               folder_ / ("patina_device_" + std::string(name) + ".so"));
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(PluginLibraries, CarryForceAndStateOfTheExample) {
+  put("patina_device_example.so", "example");
   const Realtime realtime;
   const auto device = makePluginDevice("plugin:example:0.01,0.02,0.03");
   DeviceState state;
@@ -104,20 +130,20 @@ TEST(PluginDevice, CarriesForceAndStateOfTheExample) {
     for (int i = 0; i < 10000; ++i) {
       std::this_thread::sleep_for(std::chrono::microseconds(900));
       state = device->exchange(force, kPeriod);
-      if (judge(state) == DeviceStatus::ok && done()) return true;
+      if (effectiveStatus(state) == DeviceStatus::ok && done()) return true;
     }
     return false;
   };
   ASSERT_TRUE(until(Vec3::Zero(), [] { return true; }));
   EXPECT_LT((state.position - Vec3(0.01, 0.02, 0.03)).norm(), 1e-9);
-  // It rests where its spring bears the force, which a busy machine may let fade in more than once.
+  // The tip rests where its spring balances the force; a busy machine may restart the fade.
   const Vec3 rest(0.01, 0.02 + 0.3 / 150, 0.03);
   EXPECT_TRUE(until(Vec3(0, 0.3, 0), [&] {
     return (state.position - rest).norm() < 1e-5 && state.velocity && state.velocity->norm() < 1e-4;
   })) << state.position.transpose();
 }
 
-TEST(PluginDevice, InEveryFaultSendsNoForceWithTheNextExchangeAndTellsTheLoop) {
+TEST(PluginDevice, SendsNoForceAfterAFaultAndReportsItToTheLoop) {
   for (const Fault fault : {Fault::answers_nan, Fault::answers_infinity, Fault::leaves_it_out,
                             Fault::refuses, Fault::turns_wrongly, Fault::is_far, Fault::odd_status,
                             Fault::negative_age, Fault::old_age, Fault::is_gone, Fault::throws}) {
@@ -129,8 +155,8 @@ TEST(PluginDevice, InEveryFaultSendsNoForceWithTheNextExchangeAndTellsTheLoop) {
       faulty.fault = fault;
       loop.tick(60);
       const int id = static_cast<int>(fault);
-      EXPECT_NE(judge(loop.state), DeviceStatus::ok) << id;
-      EXPECT_LE(loop.most_age, kOldestAge) << id;
+      EXPECT_NE(effectiveStatus(loop.state), DeviceStatus::ok) << id;
+      EXPECT_LE(loop.max_age, kMaxStateAge) << id;
       const std::size_t first = firstWith(fault);
       ASSERT_LT(first, static_cast<std::size_t>(faulty.calls)) << id;
       const std::size_t until = first + 1;
@@ -142,13 +168,13 @@ TEST(PluginDevice, InEveryFaultSendsNoForceWithTheNextExchangeAndTellsTheLoop) {
   }
 }
 
-TEST(PluginDevice, ThatCalibratesSaysSoAndIsGivenNoForce) {
+TEST(PluginDevice, ReportsCalibrationAndGetsNoForce) {
   Loop loop;
   loop.stiffness = 400;
   ASSERT_TRUE(loop.settles());
   faulty.fault = Fault::calibrates;
   loop.tick(60);
-  EXPECT_EQ(judge(loop.state), DeviceStatus::calibrating);
+  EXPECT_EQ(effectiveStatus(loop.state), DeviceStatus::calibrating);
   const std::size_t first = firstWith(Fault::calibrates);
   ASSERT_LT(first + 1, static_cast<std::size_t>(faulty.calls));
   for (std::size_t i = first + 1; i < static_cast<std::size_t>(faulty.calls); ++i)
@@ -157,7 +183,7 @@ TEST(PluginDevice, ThatCalibratesSaysSoAndIsGivenNoForce) {
   EXPECT_TRUE(loop.settles());
 }
 
-TEST(PluginDevice, AStallShowsAsAgeAndComesBackWithoutForceThatFadesIn) {
+TEST(PluginDevice, StallRaisesTheAgeAndThenTheForceFadesIn) {
   for (const auto& [stiffness, friction] : kLaws) {
     Loop loop;
     loop.stiffness = stiffness;
@@ -168,36 +194,36 @@ TEST(PluginDevice, AStallShowsAsAgeAndComesBackWithoutForceThatFadesIn) {
     loop.tick(40);
     const double passed = 1e-9 * static_cast<double>(monotonicNs() - begin);
     EXPECT_GT(passed, 0.03);
-    EXPECT_EQ(judge(loop.state), DeviceStatus::away); // and the ticks went on
+    EXPECT_EQ(effectiveStatus(loop.state), DeviceStatus::reconnecting); // the ticks went on
     loop.tick(100);
     ASSERT_TRUE(loop.settles());
-    EXPECT_EQ(judge(loop.state), DeviceStatus::ok);
+    EXPECT_EQ(effectiveStatus(loop.state), DeviceStatus::ok);
     const std::size_t after = firstWith(Fault::stalls) + 1;
     ASSERT_LT(after + 100, static_cast<std::size_t>(faulty.calls));
-    EXPECT_EQ(faulty.noted[after].force, 0) << "what waited for it";
+    EXPECT_EQ(faulty.noted[after].force, 0) << "the exchange after the stall";
     const double full = std::hypot(friction, stiffness * 3e-3);
     for (std::size_t i = after; i < static_cast<std::size_t>(faulty.calls); ++i) {
       const double since = 1e-9 * static_cast<double>(faulty.noted[i].at - faulty.noted[after].at);
-      // dt of the ticks is a millisecond, which they take at least 900 us for.
+      // The ticks' dt is a millisecond, and they take at least 900 us.
       ASSERT_LE(faulty.noted[i].force, full * (since + 5e-3) / 0.9 / 0.25 + 1e-12);
     }
   }
 }
 
-TEST(PluginDevice, ThatIsAlwaysLateFeelsNothing) {
+TEST(PluginDevice, GetsAlmostNoForceIfAlwaysLate) {
   Loop loop;
   loop.stiffness = 400;
-  faulty.fault = Fault::slow; // 8 ms, where 4 are too old
+  faulty.fault = Fault::slow; // 8 ms, and 4 are too old
   loop.tick(300);
   double most = 0;
   for (int i = 0; i < faulty.calls; ++i)
     most = std::max(most, faulty.noted[static_cast<std::size_t>(i)].force);
-  // Only a tick just after an answer may pass one on, and its force has not faded in.
+  // Only a tick just after an answer may pass a state on, and its force has not faded in.
   EXPECT_LT(most, 0.1);
   faulty.fault = Fault::none;
 }
 
-TEST(PluginDevice, AServoThatHangsLeavesNoForceBehind) {
+TEST(PluginDevice, KeepsNoForceIfTheServoHangs) {
   Loop loop;
   loop.stiffness = 400;
   loop.tick(400);
@@ -210,11 +236,11 @@ TEST(PluginDevice, AServoThatHangsLeavesNoForceBehind) {
     ++rests;
     late += noted.force > 0;
   }
-  EXPECT_GE(rests, 10); // the plug-in is served on
-  EXPECT_LE(late, 1);   // one may have been under way
+  EXPECT_GE(rests, 10); // the plug-in is still served
+  EXPECT_LE(late, 1);   // one may have been in progress
 }
 
-TEST(PluginDevice, SendsNoMoreThanItRendersAndNothingThatIsNone) {
+TEST(PluginDevice, LimitsForcesAndSendsNoInvalidOnes) {
   Loop loop;
   for (const double huge : {1e6, 1e300, kNan, double(INFINITY), -1e9}) {
     for (int i = 0; i < 1500; ++i) {
@@ -241,7 +267,7 @@ TEST(PluginDevice, EndsWithAForceOfZeroAndAtMostASecondAfterAHang) {
   EXPECT_EQ(faulty.noted[static_cast<std::size_t>(faulty.calls - 1)].force, 0);
 }
 
-TEST(PluginDevice, IsLeftToItselfWhereItNeverReturns) {
+TEST(PluginDevice, IsAbandonedIfItNeverReturns) {
   auto loop = std::make_unique<Loop>();
   loop->tick(20);
   faulty.fault = Fault::hangs;
@@ -250,26 +276,26 @@ TEST(PluginDevice, IsLeftToItselfWhereItNeverReturns) {
   loop.reset();
   EXPECT_LT(1e-9 * static_cast<double>(monotonicNs() - begin), 5);
   EXPECT_EQ(faulty.closed, 0);
-  faulty.release = true; // and its thread ends by itself
+  faulty.release = true; // its thread ends by itself
   for (int i = 0; i < 5000 && faulty.closed == 0; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(faulty.closed, 1);
 }
 
-TEST(PluginDevice, ThatCannotBeOpenedSaysWhy) {
+TEST(PluginDevice, GivesTheCauseIfItCannotOpen) {
   const auto opening = [](const char* argument) {
-    const auto notes = std::make_shared<LinkNotes>();
+    const auto notes = std::make_shared<LinkStatistics>();
     const auto device = makeFaulty(argument, notes);
     for (int i = 0; i < 5000 && notes->cause().empty(); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    EXPECT_EQ(judge(device->exchange(Vec3::Zero(), kPeriod)), DeviceStatus::away);
+    EXPECT_EQ(effectiveStatus(device->exchange(Vec3::Zero(), kPeriod)), DeviceStatus::reconnecting);
     return notes->cause();
   };
   EXPECT_TRUE(has(opening("refuse"), "the plug-in cannot be opened: xxxx"));
-  EXPECT_EQ(opening("throw"), "the plug-in throws an exception, which none may");
+  EXPECT_EQ(opening("throw"), "the plug-in threw an exception: it must return an error instead");
 }
 
-TEST(PluginDevice, WhatItSaysOfItselfIsJudged) {
+TEST(PluginDevice, ValidatesItsDescription) {
   const PluginFound found = described("faulty", kFaulty);
   EXPECT_EQ(found.caption, std::string(64, 'N'));
   EXPECT_EQ(found.limits.max_force, 3);
@@ -277,7 +303,7 @@ TEST(PluginDevice, WhatItSaysOfItselfIsJudged) {
   EXPECT_FALSE(found.limits.workspace);
 }
 
-TEST(PluginDevice, ThatSaysWhereItReachesIsTakenAtItsWord) {
+TEST(PluginDevice, UsesItsReportedWorkspace) {
   patina_device sound = kFaulty;
   sound.describe = [](patina_device_description* told) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -295,27 +321,8 @@ TEST(PluginDevice, ThatSaysWhereItReachesIsTakenAtItsWord) {
   EXPECT_EQ(guardFor(limits).workspace->max(), Vec3(0.02, 0.04, 0.06));
 }
 
-class PluginLibraries : public testing::Test {
- protected:
-  PluginLibraries() {
-    folder_ = test::freshFolder("plugins");
-    ::setenv("PATINA_DEVICES", folder_.c_str(), 1);
-  }
-  ~PluginLibraries() override {
-    ::unsetenv("PATINA_DEVICES");
-    std::filesystem::remove_all(folder_);
-  }
-  std::string causeOfLoading(const char* name) {
-    return causeOf([&] { (void)loadedPlugin(name); });
-  }
-  void put(const char* from, const char* name) {
-    std::filesystem::copy_file(test::programFolder() / from,
-                               folder_ / ("patina_device_" + std::string(name) + ".so"));
-  }
-  std::filesystem::path folder_;
-};
-
-TEST_F(PluginLibraries, OfAnotherVersionOrNoneAreRefusedInOneLine) {
+TEST_F(PluginLibraries, AreRefusedInOneLineIfTheVersionDiffers) {
+  put("patina_device_example.so", "example");
   put("odd_plugin_1.so", "later");
   put("odd_plugin_2.so", "hollow");
   put("odd_plugin_3.so", "nothing");
@@ -323,22 +330,62 @@ TEST_F(PluginLibraries, OfAnotherVersionOrNoneAreRefusedInOneLine) {
   std::ofstream(folder_ / "patina_device_text.so") << "no library";
   EXPECT_TRUE(has(causeOfLoading("later"), "patina_device_later.so is made for version 2 of "
                                            "patina_device.h, this program reads version 1: build"));
-  EXPECT_TRUE(has(causeOfLoading("hollow"), "is not whole"));
+  EXPECT_TRUE(has(causeOfLoading("hollow"), "is incomplete"));
   EXPECT_TRUE(has(causeOfLoading("nothing"), "has no device to offer"));
-  EXPECT_TRUE(has(causeOfLoading("foreign"), "is no plug-in: it has no patina_device_entry"));
-  EXPECT_TRUE(has(causeOfLoading("text"), "cannot be loaded: "));
+  EXPECT_TRUE(has(causeOfLoading("foreign"), "is no plug-in: it has no patina_device_entry_v1"));
+  EXPECT_TRUE(has(causeOfLoading("text"), "cannot be loaded: it is no shared library"));
   EXPECT_TRUE(has(causeOfLoading("absent"), "there is no plug-in absent: put "
                                             "patina_device_absent.so into one of "));
   for (const char* name : {"later", "hollow", "nothing", "foreign", "text", "absent"})
     EXPECT_FALSE(has(causeOfLoading(name), "\n")) << name;
-  // All of them are listed, and the one that ships.
+  // The list has all of them, and the example.
   int sound = 0, odd = 0;
   for (const PluginFound& found : installedPlugins()) ++(found.problem.empty() ? sound : odd);
   EXPECT_EQ(sound, 1);
   EXPECT_EQ(odd, 5);
 }
 
-TEST_F(PluginLibraries, AreNamedByAWordAndNeverByAPlace) {
+TEST_F(PluginLibraries, AreRefusedInOneLineIfOthersCanChangeThem) {
+  put("patina_device_example.so", "shared");
+  const std::filesystem::path file = folder_ / "patina_device_shared.so";
+  const auto setWritable = [](const std::filesystem::path& path, bool by_all) {
+    std::filesystem::permissions(path, std::filesystem::perms::others_write,
+                                 by_all ? std::filesystem::perm_options::add
+                                        : std::filesystem::perm_options::remove);
+  };
+  for (const std::filesystem::path& place : {file, folder_}) {
+    EXPECT_EQ(causeOfLoading("shared"), "nothing");
+    setWritable(place, true);
+    EXPECT_TRUE(has(causeOfLoading("shared"), "patina_device_shared.so: is not trusted: others may "
+                                              "write into "));
+    EXPECT_FALSE(has(causeOfLoading("shared"), "\n"));
+    setWritable(place, false);
+  }
+  EXPECT_EQ(causeOfLoading("shared"), "nothing");
+}
+
+// The file is read before it is known to be sound: damaged tables end in one line or in nothing.
+TEST_F(PluginLibraries, DamagedFilesAreReadWithinTheirBytes) {
+  const std::string sound = readFile(test::programFolder() / "patina_device_example.so");
+  const std::filesystem::path file = folder_ / "damaged.so";
+  std::mt19937 random(7);
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string bytes = sound;
+    for (int k = 0; k < 4; ++k) { // in the header, the table of sections or a table of symbols
+      const std::size_t from = k == 0 ? 0 : k == 1 ? bytes.size() - 2000 : bytes.size() / 32;
+      bytes[from + random() % (k == 0   ? 64
+                               : k == 1 ? 2000
+                                        : 2048)] = static_cast<char>(random() % 256);
+    }
+    if (i % 3 == 0) bytes.resize(random() % bytes.size());
+    std::ofstream(file, std::ios::binary) << bytes;
+    refused += causeOf([&] { requirePluginAbi(file); }) != "nothing";
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST_F(PluginLibraries, AreNamedByAWordAndNeverByAPath) {
   for (const char* name : {"plugin:", "plugin:../evil", "plugin:a/b", "plugin:a.so", "plugin::x"})
     EXPECT_TRUE(has(causeOf([&] { (void)deviceNamed(name); }), "it must be plugin:NAME")) << name;
   EXPECT_EQ(pluginName("plugin:inverse3:localhost:10001").argument, "localhost:10001");

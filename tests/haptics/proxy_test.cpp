@@ -1,11 +1,11 @@
-// The contact point where the field hardly resolves what there is, and what a tick of it costs. A
-// voxel is a metre here.
-#include "haptics/contact/proxy_stage.h"
+// The contact point near features that the field hardly resolves, and the cost of a tick. A voxel
+// is a metre here.
+#include "haptics/law/proxy_stage.h"
 
 #include <gtest/gtest.h>
 
-#include "haptics/contact/contact_memory.h"
 #include "haptics/contact_fixture.h"
+#include "haptics/law/contact_memory.h"
 #include "support/constants.h"
 
 namespace patina {
@@ -17,14 +17,14 @@ std::shared_ptr<const HapticSnapshot> felt(const Distance& phi, int cells = 48) 
   return compileStages(sceneOf(1), cubeField(phi, 1, cells));
 }
 
-// The tip comes down to `place` and rests there.
+// Moves the tip down to `place` and lets it rest there.
 Contact resting(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& place) {
   tick(snapshot, memory, Vec3(0, 0, 4), kPeriod);
   glide(snapshot, memory, place, 0.05);
   return glide(snapshot, memory, place, 1);
 }
 
-TEST(ProxyWay, MeetsASphereWhereTheQuadraticSays) {
+TEST(ProxyWay, MeetsASphereAtTheQuadraticsRoot) {
   const double radius = 12;
   const Field ball = cubeField([=](const Vec3& p) { return p.norm() - radius; }, 1, 48);
   const FieldSampler sampler(*ball, Sampler::high);
@@ -49,9 +49,9 @@ TEST(ProxyWay, MeetsASphereWhereTheQuadraticSays) {
   }
 }
 
-// Past the middle of a ball the nearest point is on the other side, and c runs there round the
-// ball.
-TEST(Proxy, AContactPointThatRunsGoesAsFarAsItMayForOneReadATick) {
+// Past the centre of a ball the nearest point is on the other side, and the contact point c moves
+// there round the ball.
+TEST(Proxy, RunningContactPointMovesByItsLimitWithOneReadATick) {
   const double radius = 10;
   const auto ball = felt([=](const Vec3& p) { return p.norm() - radius; }, 40);
   const double most = kSnapSides * 40 * kPeriod;
@@ -60,11 +60,11 @@ TEST(Proxy, AContactPointThatRunsGoesAsFarAsItMayForOneReadATick) {
   tick(*ball, memory, Vec3(0.5, 0.2, 11), kPeriod);
   Contact last = glide(*ball, memory, past, 2);
   int ran = 0, samples = 0;
-  for (; ran < 1000 && last.candidate.z() > -5; ++ran) {
+  for (; ran < 1000 && last.frictionless_point.z() > -5; ++ran) {
     const Contact now = tick(*ball, memory, past, kPeriod);
     ASSERT_TRUE(now.snap);
-    EXPECT_NEAR((now.candidate - last.candidate).norm(), most, 0.01 * most);
-    EXPECT_NEAR(now.candidate.norm(), radius, 0.01);
+    EXPECT_NEAR((now.frictionless_point - last.frictionless_point).norm(), most, 0.01 * most);
+    EXPECT_NEAR(now.frictionless_point.norm(), radius, 0.01);
     samples += now.samples;
     last = now;
   }
@@ -72,9 +72,8 @@ TEST(Proxy, AContactPointThatRunsGoesAsFarAsItMayForOneReadATick) {
   EXPECT_LE(samples, 1.02 * ran);
 }
 
-// An edit has forgotten how far away the surface was. Relief may fall four times as fast as the
-// distance to it.
-TEST(Proxy, AfterAnEditAQuickTipMeetsTheFirstOfTwoParts) {
+// An edit resets the free distance. Relief may fall four times as fast as the distance to it.
+TEST(Proxy, QuickTipMeetsTheFirstOfTwoPartsAfterAnEdit) {
   const Field parts =
       cubeField([](const Vec3& p) { return std::min(std::abs(p.z()) - 0.25, p.z() + 3); }, 1, 48);
   const ProxyStage stage(FieldSampler(*parts, Sampler::high), 0, 4);
@@ -85,11 +84,11 @@ TEST(Proxy, AfterAnEditAQuickTipMeetsTheFirstOfTwoParts) {
   contact.dt = kPeriod;
   stage.apply(contact, memory);
   ASSERT_TRUE(contact.touching);
-  EXPECT_NEAR(contact.candidate.z(), 0.25, 1e-3);
+  EXPECT_NEAR(contact.frictionless_point.z(), 0.25, 1e-3);
 }
 
-// Blended normals lean in a corner; whatever they are, their loads make up the way to c.
-TEST(Proxy, ThreeWallsBearTheDepthTogetherTheHeaviestFirst) {
+// Blended normals lean in a corner; their loads still add up to the vector to c.
+TEST(Proxy, ThreeWallsShareTheDepthTheHeaviestFirst) {
   const auto corner = felt([](const Vec3& p) { return p.minCoeff(); });
   const Vec3 tip(-1.5, -2.5, -0.9);
   ContactMemory memory;
@@ -97,19 +96,19 @@ TEST(Proxy, ThreeWallsBearTheDepthTogetherTheHeaviestFirst) {
   glide(*corner, memory, tip, 0.05);
   for (int i = 0; i < 20; ++i) {
     const Contact contact = tick(*corner, memory, tip, kPeriod);
-    EXPECT_LT(contact.candidate.norm(), 0.1);
+    EXPECT_LT(contact.frictionless_point.norm(), 0.1);
     ASSERT_EQ(contact.walls, 3);
     Vec3 sum = Vec3::Zero();
-    for (const Contact::WallLoad& wall : contact.wall) sum += wall.load * wall.normal;
-    EXPECT_LT((sum - (contact.candidate - tip)).norm(), 1e-2);
-    EXPECT_GE(contact.wall[0].load, contact.wall[1].load);
-    EXPECT_GE(contact.wall[1].load, contact.wall[2].load);
+    for (const Contact::WallLoad& wall : contact.wall) sum += wall.multiplier * wall.normal;
+    EXPECT_LT((sum - (contact.frictionless_point - tip)).norm(), 1e-2);
+    EXPECT_GE(contact.wall[0].multiplier, contact.wall[1].multiplier);
+    EXPECT_GE(contact.wall[1].multiplier, contact.wall[2].multiplier);
     EXPECT_LE(contact.samples, 3);
   }
 }
 
-// A groove so flat that a look at its middle takes either wall for the other.
-TEST(Proxy, AFlatGrooveHoldsWithBothItsWallsForAsLongAsTheTipRests) {
+// A groove so flat that an evaluation at its centre mistakes either wall for the other.
+TEST(Proxy, FlatGrooveHoldsTheRestingTipWithBothWalls) {
   const double lean = 0.2;
   const auto groove = felt(
       [=](const Vec3& p) { return std::cos(lean) * p.z() - std::sin(lean) * std::abs(p.x()); });
@@ -117,16 +116,15 @@ TEST(Proxy, AFlatGrooveHoldsWithBothItsWallsForAsLongAsTheTipRests) {
   resting(*groove, memory, Vec3(0.05, 0.3, -1));
   for (int i = 0; i < 20; ++i) {
     const Contact contact = tick(*groove, memory, Vec3(0.05, 0.3, -1), kPeriod);
-    EXPECT_LT((contact.candidate - Vec3(0, 0.3, 0)).norm(), 2e-3);
+    EXPECT_LT((contact.frictionless_point - Vec3(0, 0.3, 0)).norm(), 2e-3);
     ASSERT_EQ(contact.walls, 2);
-    EXPECT_NEAR(contact.wall[0].load + contact.wall[1].load, 1 / std::cos(lean), 2e-2);
+    EXPECT_NEAR(contact.wall[0].multiplier + contact.wall[1].multiplier, 1 / std::cos(lean), 2e-2);
     EXPECT_LE(contact.samples, 3);
   }
 }
 
-// One read a tick, by which c is off no more than the field's own 9e-4 and the 3e-4 that a step may
-// leave undone.
-TEST(Proxy, ATickOnASmoothSurfaceReadsTheFieldOnce) {
+// One read a tick leaves c off by at most the field's own 9e-4 and the 3e-4 of an unfinished step.
+TEST(Proxy, ReadsTheFieldOnceATickOnASmoothSurface) {
   const double radius = 20, depth = 2, step = 0.1;
   const Vec3 u = Vec3(3, 1, -2).normalized(), v = u.cross(Vec3(0.3, -0.2, 1)).normalized();
   for (const double side : {1.0, -1.0}) { // a ball, and a hollow
@@ -143,7 +141,7 @@ TEST(Proxy, ATickOnASmoothSurfaceReadsTheFieldOnce) {
       const Contact contact = tick(*round, memory, at * outward, kPeriod);
       ASSERT_GE(contact.samples, 1);
       samples += contact.samples;
-      worst = std::max(worst, (contact.candidate - radius * outward).norm());
+      worst = std::max(worst, (contact.frictionless_point - radius * outward).norm());
     }
     EXPECT_LE(samples, 204) << side;
     EXPECT_LE(worst, 1.3e-3) << side;

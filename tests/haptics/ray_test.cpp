@@ -14,8 +14,8 @@ Scene rayScene(double stiffness, Sampler sampler = Sampler::high) {
   return scene;
 }
 
-// T-K06a. Coordinates that float holds exactly are found exactly; others to the millionth of a
-// voxel at which the search ends.
+// T-K06a. Coordinates that a float represents exactly are found exactly; others to the search's
+// tolerance, a millionth of a voxel.
 TEST(Ray, VcpOnAPlaneIsExact) {
   const auto snapshot = compileStages(rayScene(500), planeField());
   std::mt19937 random(1);
@@ -42,7 +42,7 @@ TEST(Ray, VcpOnASphereConvergesWithOrderTwo) {
     const Field sphere = sphereField(0.03, cells);
     const auto snapshot = compileStages(rayScene(500, Sampler::kim), sphere);
     std::mt19937 random(2);
-    // Within every band: deeper, the coarse nodes tell the direction.
+    // The depth stays within every band: deeper, the coarse nodes give the direction.
     std::uniform_real_distribution<double> depth(0.3e-3, 1.4e-3);
     double sum = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -84,8 +84,9 @@ TEST(Ray, VcpLiesOnTheSurfaceWithinTheBoundOnSamples) {
   }
 }
 
-// K05: no direction at the middle of a plate -> the last one; without a last one, no force.
-TEST(Ray, KeepsTheLastDirectionWhereThereIsNone) {
+// K05: no direction at the centre of a plate: the last one is kept; without a last one there is no
+// force.
+TEST(Ray, KeepsTheLastDirectionIfThereIsNone) {
   const auto snapshot = compileStages(rayScene(500), plateField(0.8e-3));
   ContactMemory memory;
   tick(*snapshot, memory, Vec3(0, 0, 0.5e-3), 1e-3);
@@ -97,7 +98,7 @@ TEST(Ray, KeepsTheLastDirectionWhereThereIsNone) {
   EXPECT_EQ(unknown.force, Vec3::Zero().eval());
 }
 
-TEST(Ray, DeepWithoutCoarseNodesHoldsTheLastDirection) {
+TEST(Ray, KeepsTheLastDirectionDeepWithoutCoarseNodes) {
   SurfaceField field = *planeField();
   field.coarse.clear();
   const auto snapshot = compileStages(rayScene(500), std::make_shared<const SurfaceField>(field));
@@ -108,9 +109,8 @@ TEST(Ray, DeepWithoutCoarseNodesHoldsTheLastDirection) {
   EXPECT_NEAR(contact.force.z(), 500 * 0.013, 1e-5);
 }
 
-// T-K12b without an offset: past the middle of a plate the force turns round, and that is
-// announced.
-TEST(Ray, TurnsRoundPastTheMiddleOfAPlate) {
+// T-K12b without an offset: past the centre of a plate the force reverses, and this is reported.
+TEST(Ray, ReversesPastTheMiddleOfAPlate) {
   const auto snapshot = compileStages(rayScene(500), plateField(0.8e-3));
   ContactMemory memory;
   glide(*snapshot, memory, Vec3(0, 0, 0.5e-3));
@@ -121,22 +121,22 @@ TEST(Ray, TurnsRoundPastTheMiddleOfAPlate) {
   EXPECT_FALSE(turned.fault);
 }
 
-TEST(Ray, AContactThatBeginsAnewIsDrawnByNothing) {
+TEST(Ray, NewContactHasNoDisplacement) {
   const auto snapshot = compileStages(rayScene(500), plateField(0.8e-3));
   ContactMemory memory;
   glide(*snapshot, memory, Vec3(0, 0, 0.6e-3));
   glide(*snapshot, memory, Vec3(0, 0, 0.3e-3));
   for (const Vec3& free : {Vec3(0, 0, 1e-3), Vec3(4e-3, 0, 1e-3), Vec3(4e-3, 0, -1e-3)})
     EXPECT_FALSE(tick(*snapshot, memory, free, 1e-3).touching);
-  const Contact anew = tick(*snapshot, memory, Vec3(2e-3, 0, -0.3e-3), 1e-3);
-  ASSERT_TRUE(anew.touching);
-  EXPECT_EQ(anew.drawn, Vec3::Zero());
-  EXPECT_FALSE(anew.snap); // from the other side, but not by itself
+  const Contact again = tick(*snapshot, memory, Vec3(2e-3, 0, -0.3e-3), 1e-3);
+  ASSERT_TRUE(again.touching);
+  EXPECT_EQ(again.displacement, Vec3::Zero());
+  EXPECT_FALSE(again.snap); // from the other side, without a step of its own
 }
 
 // K06: brute force along the ray, from deep inside a cube without one octant, where the slope of
 // the blend may be anything.
-TEST(Ray, FindsTheFirstCrossingWhereThereIsOne) {
+TEST(Ray, FindsTheFirstCrossing) {
   const Field corner = cubeField(
       [](const Vec3& p) {
         const Vec3 half = Vec3::Constant(8);
@@ -159,7 +159,7 @@ TEST(Ray, FindsTheFirstCrossingWhereThereIsOne) {
     missed += std::abs(contact.depth - first) > 1.0 / 32;
   }
   EXPECT_GT(crossings, 1000);
-  EXPECT_LE(missed, crossings / 1000); // 2 % once, by steps that took no slope of theirs
+  EXPECT_LE(missed, crossings / 1000); // 2 % if steps ignore the slope
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Pulled relief as it is felt: T-K21a, T-K21f, F6, F8.
+// Rendering of pulled relief: T-K21a, T-K21f, F6, F8.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -15,13 +15,13 @@ using test::kPi;
 
 constexpr double kSide = Slab::kSide;
 
-std::shared_ptr<const HapticSnapshot> compiledRelief(const Scene& scene, const FeltObject& object,
+std::shared_ptr<const HapticSnapshot> compiledRelief(const Scene& scene, const HapticObject& object,
                                                      const Field& field) {
   return compileStages(scene, field, std::span(&object, 1));
 }
 
-// T-K21a: a constant gray of 1, s = 1 mm, on a sphere; also engraved, and with either form.
-TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
+// T-K21a: a constant gray of 1, s = 1 mm, on a sphere; also engraved, and with both forms.
+TEST(PulledRelief, ConstantImageMovesTheSphereByItsHeight) {
   const double R = 0.03, K = 500;
   const TriangleMesh mesh = icosphere(R, 50);
   FieldSpec spec;
@@ -35,7 +35,7 @@ TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
     for (const ForceForm form : {ForceForm::conservative, ForceForm::literal}) {
       Scene scene = sceneOf(K);
       scene.relief.form = form;
-      const auto snapshot = compiledRelief(scene, feltRelief(faces, white, s), sphere);
+      const auto snapshot = compiledRelief(scene, hapticRelief(faces, white, s), sphere);
       std::mt19937 random(1);
       for (int i = 0; i < 300; ++i) {
         const Vec3 n = randomDirection(random);
@@ -53,12 +53,12 @@ TEST(PulledRelief, AConstantImageMovesTheSphereByItsHeight) {
     }
 }
 
-// A zero image: bit for bit the scene without it, wherever the shell is the surface itself.
-TEST(PulledRelief, OfNoHeightChangesNoBit) {
+// A zero image gives the same bits as no image, if the shell is the surface itself.
+TEST(PulledRelief, ChangesNoBitIfItHasNoHeight) {
   const Slab& plane = fineSlab();
   const Scene scene = withFriction(sceneOf(500), 0.5, 0.3);
-  const FeltObject black =
-      feltRelief(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3, 0);
+  const HapticObject black =
+      hapticRelief(plane.faces, std::make_shared<TiledImage>(64, 64, 1), 1e-3, 0);
   const auto without = compileStages(scene, plane.field);
   const auto with = compiledRelief(scene, black, plane.field);
   EXPECT_EQ(with->stages.size(), without->stages.size());
@@ -75,11 +75,11 @@ TEST(PulledRelief, OfNoHeightChangesNoBit) {
   }
 }
 
-// Where others are raised and the image is 0, to the ray's tolerance.
-TEST(PulledRelief, WhereTheImageIsZeroTheForceIsThatOfTheBareSurface) {
+// If other objects are raised and the image is 0, the forces agree to the ray's tolerance.
+TEST(PulledRelief, ForceEqualsTheBareSurfacesWhereTheImageIsZero) {
   const Slab& plane = fineSlab();
   const Scene scene = sceneOf(500);
-  const FeltObject part = feltRelief(
+  const HapticObject part = hapticRelief(
       plane.faces, reliefImage(128, [](double u, double) { return u > 0.7 ? 1 : 0; }), 1e-3);
   const auto without = compileStages(scene, plane.field);
   const auto with = compiledRelief(scene, part, plane.field);
@@ -91,14 +91,14 @@ TEST(PulledRelief, WhereTheImageIsZeroTheForceIsThatOfTheBareSurface) {
     }
 }
 
-// T-K21f: on the flank of a ramp of slope a the force leans by atan(a); as in the papers it does
-// not.
-TEST(PulledRelief, TheForceIsThatOfTheTexturedSurface) {
+// T-K21f: on the flank of a ramp of slope a, tilt_normal rotates the force by atan(a); the papers'
+// form does not.
+TEST(PulledRelief, ForceEqualsTheTexturedSurfaces) {
   const Slab& plane = fineSlab();
   for (const double a : {0.1, 0.5}) {
     const double s = a * kSide;
-    const FeltObject ramp =
-        feltRelief(plane.faces, reliefImage(64, [](double u, double) { return u - 0.5; }), s, 0.1);
+    const HapticObject ramp = hapticRelief(
+        plane.faces, reliefImage(64, [](double u, double) { return u - 0.5; }), s, 0.1);
     for (const ForceForm form : {ForceForm::conservative, ForceForm::literal}) {
       Scene scene = sceneOf(500);
       scene.relief.form = form;
@@ -116,18 +116,18 @@ TEST(PulledRelief, TheForceIsThatOfTheTexturedSurface) {
   }
 }
 
-// F8: 2.5 voxels, at least 22 texels a wavelength. The height is where the force vanishes.
+// F8: 2.5 voxels, at least 22 texels a wavelength. The height is at the zero of the force.
 double heightFelt(const HapticSnapshot& snapshot, double x, double y, double most, double K) {
   const Contact contact = touchOnce(snapshot, Vec3(x, y, -3 * most));
   return contact.force.z() / K - 3 * most;
 }
 
-TEST(PulledRelief, HasItsWholeHeightAtAWavelengthOfTwoAndAHalfVoxels) {
+TEST(PulledRelief, HasItsFullHeightAtAWavelengthOfTwoAndAHalfVoxels) {
   const Slab& plane = fineSlab();
   const double wavelength = 2.5 * plane.field->grid.voxel, A = 0.1e-3, K = 500;
   const int size = 736; // 23 texels a wavelength
   const double k = 2 * kPi / wavelength;
-  const FeltObject object = feltRelief(
+  const HapticObject object = hapticRelief(
       plane.faces,
       reliefImage(size, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }), A);
   const auto snapshot = compiledRelief(sceneOf(K), object, plane.field);
@@ -154,7 +154,7 @@ TEST(PulledRelief, HasItsWholeHeightAtAWavelengthOfTwoAndAHalfVoxels) {
 TEST(PulledRelief, OnlyTheLiteralFormDoesWorkRoundALoop) {
   const Slab& plane = fineSlab();
   const double A = 0.25e-3, wavelength = 2e-3, K = 500, dz = 1e-3, k = 2 * kPi / wavelength;
-  const FeltObject object = feltRelief(
+  const HapticObject object = hapticRelief(
       plane.faces,
       reliefImage(1024, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }), A);
   const double valley = 0.5 * wavelength, peak = 0;
@@ -172,8 +172,8 @@ TEST(PulledRelief, OnlyTheLiteralFormDoesWorkRoundALoop) {
   EXPECT_LT(std::abs(conservative), 0.01 * theory);
 }
 
-// On a sphere the closest point moves by R / r of what the tip does: J^T, K12.
-TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
+// On a sphere the closest point moves by R / r of the tip's motion: J^T, K12.
+TEST(PulledRelief, ConservativeFormDoesNoWorkOnASphere) {
   const double R = 0.012, K = 500, s = 1.2e-3;
   const TriangleMesh mesh = icosphere(R, 60);
   FieldSpec spec;
@@ -186,8 +186,8 @@ TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
     for (int c = 0; c < 3; ++c)
       uvs[f][static_cast<std::size_t>(c)] = Vec2(mesh.corner(f, c).x() / (2.2 * R) + 0.5, 0.5);
   const auto faces = reliefFaces(mesh, uvs);
-  const FeltObject object =
-      feltRelief(faces, reliefImage(256, [](double u, double) { return std::sin(12 * u); }), s);
+  const HapticObject object =
+      hapticRelief(faces, reliefImage(256, [](double u, double) { return std::sin(12 * u); }), s);
   const auto at = [&](double angle, double r) {
     return Vec3(r * std::sin(angle), 2e-4, r * std::cos(angle));
   };
@@ -210,11 +210,11 @@ TEST(PulledRelief, OnASphereTheConservativeFormDoesNoWorkEither) {
   EXPECT_LT(std::abs(conservative), 0.01 * theory);
 }
 
-// The force is continuous from texel to texel: what a bilinear surface's slope would not give.
-TEST(PulledRelief, TheForceDoesNotStepFromTexelToTexel) {
+// The force is continuous from texel to texel, unlike the slope of a bilinear surface.
+TEST(PulledRelief, ForceDoesNotStepFromTexelToTexel) {
   const Slab& plane = fineSlab();
   const double A = 0.2e-3, wavelength = 2e-3, k = 2 * kPi / wavelength; // 6.4 texels
-  const FeltObject object = feltRelief(
+  const HapticObject object = hapticRelief(
       plane.faces,
       reliefImage(128, [&](double u, double) { return std::cos(k * kSide * (u - 0.5)); }), A);
   const auto snapshot = compiledRelief(sceneOf(500), object, plane.field);
@@ -227,16 +227,16 @@ TEST(PulledRelief, TheForceDoesNotStepFromTexelToTexel) {
     worst = std::max(worst, (force - last).norm() / step);
     last = force;
   }
-  // No more than the smooth surface's own stiffness, and its P h''.
+  // at most the smooth surface's stiffness plus its P h''
   EXPECT_LT(worst, 1.5 * 500 * (1 + (A * k) * (A * k) + (d + A) * A * k * k));
 }
 
-// Friction over relief: the tip sticks and slides on it, and lets go where the relief falls away.
-TEST(PulledRelief, FrictionIsThatOfTheForceAlongItsNormal) {
+// Friction over relief: the tip sticks and slides on it, and detaches where the relief falls away.
+TEST(PulledRelief, FrictionFollowsTheForceAlongTheNormal) {
   const Slab& plane = fineSlab();
   const double mu = 0.4;
-  const FeltObject flat =
-      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 1e-3);
+  const HapticObject flat =
+      hapticRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 1e-3);
   const auto snapshot = compiledRelief(withFriction(sceneOf(500), mu, mu), flat, plane.field);
   ContactMemory memory;
   const double d = 0.8e-3;
@@ -247,17 +247,17 @@ TEST(PulledRelief, FrictionIsThatOfTheForceAlongItsNormal) {
   EXPECT_NEAR(slid.force.x(), -mu * 500 * d, 1e-4);
   const Contact off = glide(*snapshot, memory, Vec3(4e-3, 0, 0.51e-3));
   EXPECT_FALSE(off.touching);
-  EXPECT_FALSE(memory.friction.grip);
+  EXPECT_FALSE(memory.friction.stick);
   EXPECT_TRUE(off.force.isZero(0));
   EXPECT_EQ(off.vcp, off.tip);
 }
 
-TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
+TEST(PulledRelief, MagnetPullsTowardsTheRelief) {
   const Slab& plane = fineSlab();
   Scene scene = sceneOf(500);
   scene.haptics.magnet = Magnet{1e-3, 300, false};
-  const FeltObject flat =
-      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 2e-3);
+  const HapticObject flat =
+      hapticRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 2e-3);
   const auto snapshot = compiledRelief(scene, flat, plane.field);
   for (const double above : {0.2e-3, 0.7e-3}) {
     const Contact contact = touchOnce(*snapshot, Vec3(1e-3, 0, 1e-3 + above));
@@ -267,15 +267,15 @@ TEST(PulledRelief, OverAMagnetThePullIsTowardsTheRelief) {
   EXPECT_FALSE(touchOnce(*snapshot, Vec3(1e-3, 0, 2.05e-3)).attracted);
 }
 
-// Over paint that it does not touch a tip that is pulled is damped as the scene says, whichever
-// stage has found that it does not touch.
-TEST(PulledRelief, OverAMagnetThePaintBeneathDoesNotDamp) {
+// A tip that is pulled over paint without touching is damped by the scene's value, whichever stage
+// detects that there is no contact.
+TEST(PulledRelief, PaintBelowDoesNotDampAMagnet) {
   const Slab& plane = fineSlab();
   Scene scene = sceneOf(500);
   scene.haptics.magnet = Magnet{1e-3, 300, false};
   scene.haptics.damping = 1;
-  const FeltObject flat =
-      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 2e-3);
+  const HapticObject flat =
+      hapticRelief(plane.faces, reliefImage(64, [](double, double) { return 0.5; }), 2e-3);
   for (const bool rough : {false, true}) {
     const auto map = coveredMap(plane.field->grid.voxel, cube(6e-3), MaterialChannel::damping,
                                 [](const Vec3&) { return 8; });
@@ -283,10 +283,10 @@ TEST(PulledRelief, OverAMagnetThePaintBeneathDoesNotDamp) {
       coveredMap(
           plane.field->grid.voxel, cube(6e-3), MaterialChannel::roughness,
           [](const Vec3&) { return 2e-4; }, map);
-    FeltObject object = rough ? FeltObject{} : flat;
-    object.material = feltMaterial(*map, scene).material;
+    HapticObject object = rough ? HapticObject{} : flat;
+    object.material = hapticMaterial(*map, scene).material;
     const auto snapshot = compiledRelief(scene, object, plane.field);
-    const double foot = rough ? 0 : 1e-3; // the relief's height; the magnet knows no roughness
+    const double foot = rough ? 0 : 1e-3; // the relief's height; the magnet ignores roughness
     ContactMemory memory;
     glide(*snapshot, memory, Vec3(1e-3, 0, foot + 0.9e-3));
     glide(*snapshot, memory, Vec3(1e-3, 0, foot + 0.4e-3));
@@ -296,10 +296,10 @@ TEST(PulledRelief, OverAMagnetThePaintBeneathDoesNotDamp) {
   }
 }
 
-TEST(PulledRelief, HigherThanTheBandIsRefusedWithTheRemedy) {
+TEST(PulledRelief, IsRefusedWithTheRemedyIfHigherThanTheBand) {
   const Slab& plane = fineSlab();
-  const FeltObject object =
-      feltRelief(plane.faces, reliefImage(64, [](double, double) { return 1; }), 8e-3);
+  const HapticObject object =
+      hapticRelief(plane.faces, reliefImage(64, [](double, double) { return 1; }), 8e-3);
   try {
     compiledRelief(sceneOf(500), object, plane.field);
     FAIL() << "accepted";
@@ -310,31 +310,33 @@ TEST(PulledRelief, HigherThanTheBandIsRefusedWithTheRemedy) {
   }
 }
 
-// T-RAMP over relief: applied, raised and taken away under a pressed tip, at 30 Hz; every edit
-// moves the shell that contact is found with.
+// T-RAMP over relief: it is applied, raised and removed under a pressed tip, at 30 Hz; every edit
+// moves the shell of contact.
 TEST(PulledRelief, EditsUnderAPressedTipRamp) {
   const Slab& plane = fineSlab();
   const Scene scene = withFriction(sceneOf(500), 0.4, 0.3);
   std::vector<std::shared_ptr<const HapticSnapshot>> versions{compileStages(scene, plane.field)};
   for (const double s : {0.2e-3, 1e-3, 3e-3, -1e-3, 0.5e-3})
     for (const double k : {30.0, 200.0})
-      versions.push_back(compiledRelief(
-          scene,
-          feltRelief(plane.faces,
-                     reliefImage(256, [=](double u,
-                                          double v) { return std::sin(k * u) * std::cos(k * v); }),
-                     s),
-          plane.field));
+      versions.push_back(compiledRelief(scene,
+                                        hapticRelief(plane.faces,
+                                                     reliefImage(256,
+                                                                 [=](double u, double v) {
+                                                                   return std::sin(k * u) *
+                                                                          std::cos(k * v);
+                                                                 }),
+                                                     s),
+                                        plane.field));
   versions.push_back(versions.front());
   CrossFade law;
-  law.turnTo(versions.front().get());
+  law.fadeTo(versions.front().get());
   Vec3 tip(0.3e-3, 0, 1e-3);
   for (int i = 0; i < 100; ++i) law.tick(tip += Vec3(1e-5, 0, -2.5e-5), 1e-3);
   Vec3 last = law.tick(tip, 1e-3).force;
   double worst = 0;
   std::size_t next = 1;
   for (int i = 0; next < versions.size() || law.fading(); ++i) {
-    if (i % 33 == 0 && !law.fading()) law.turnTo(versions[next++].get());
+    if (i % 33 == 0 && !law.fading()) law.fadeTo(versions[next++].get());
     const Contact contact = law.tick(tip, 1e-3);
     ASSERT_FALSE(contact.fault) << next;
     worst = std::max(worst, (contact.force - last).norm());
@@ -344,8 +346,8 @@ TEST(PulledRelief, EditsUnderAPressedTipRamp) {
   EXPECT_GT(worst, 0.01);
 }
 
-// Two objects, one of them raised: each keeps what is its own.
-TEST(PulledRelief, IsThatOfTheObjectTouched) {
+// Two objects, one of them raised: each keeps its own relief.
+TEST(PulledRelief, BelongsToTheTouchedObject) {
   TriangleMesh left = box(Vec3(0.02, 0.02, 0.012), 1), right = left;
   for (Vec3& p : left.positions) p += Vec3(-0.015, 0, -0.006);
   for (Vec3& p : right.positions) p += Vec3(0.015, 0, -0.006);
@@ -356,13 +358,13 @@ TEST(PulledRelief, IsThatOfTheObjectTouched) {
   const Field field = withSamples(buildField(both, spec, progress).field);
   const auto white = reliefImage(64, [](double, double) { return 1; });
   const Scene scene = sceneOf(500);
-  std::vector<FeltObject> objects{
-      feltRelief(reliefFaces(left, CornerUvs(left.triangles.size())), white, 0.5e-3),
-      feltRelief(reliefFaces(right, CornerUvs(right.triangles.size())), white, 1.5e-3)};
+  std::vector<HapticObject> objects{
+      hapticRelief(reliefFaces(left, CornerUvs(left.triangles.size())), white, 0.5e-3),
+      hapticRelief(reliefFaces(right, CornerUvs(right.triangles.size())), white, 1.5e-3)};
   objects[1].first_face = static_cast<std::int32_t>(left.triangles.size());
-  objects[1].material = feltMaterial(*coveredMap(0.5e-3, cube(0.03), MaterialChannel::stiffness,
-                                                 [](const Vec3&) { return 800; }),
-                                     scene)
+  objects[1].material = hapticMaterial(*coveredMap(0.5e-3, cube(0.03), MaterialChannel::stiffness,
+                                                   [](const Vec3&) { return 800; }),
+                                       scene)
                             .material;
   const auto snapshot = compileStages(scene, field, objects);
   ContactMemory memory;

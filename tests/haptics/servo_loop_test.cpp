@@ -8,7 +8,7 @@
 
 #include "core/percentiles.h"
 #include "core/timing_window.h"
-#include "haptics/servo/realtime.h"
+#include "haptics/device/realtime.h"
 #include "support/simulated_device.h"
 
 namespace patina {
@@ -26,7 +26,7 @@ std::shared_ptr<const HapticSnapshot> sphereSnapshot(double stiffness) {
   return compileStages(scene, withSamples(field));
 }
 
-// A device that stands still inside the sphere and keeps what it was asked to render.
+// A device that stands still inside the sphere and keeps the force that it received.
 class WitnessDevice final : public Device {
  public:
   DeviceState exchange(const Vec3& force, double dt) noexcept override {
@@ -49,7 +49,7 @@ void waitForExchanges(const WitnessDevice& device, int count) {
   ASSERT_GE(device.exchanges.load(), until) << "the servo does not run";
 }
 
-TEST(ServoLoop, RendersNothingBeforeTheFirstSnapshotAndAnEditFromTheNextTickOn) {
+TEST(ServoLoop, RendersNothingBeforeTheFirstSnapshotAndAnEditFromTheNextTick) {
   auto owned = std::make_unique<WitnessDevice>();
   WitnessDevice& device = *owned;
   ServoLoop loop(std::move(owned));
@@ -110,12 +110,12 @@ TEST(ServoLoop, ReportsEveryTickThroughTheRing) {
   EXPECT_EQ(drained, timing.ticks);
   EXPECT_GT(drained, 100u);
   EXPECT_FALSE(timing.policy.empty());
-  // Between them, ticks and missed deadlines account for the whole time.
+  // Ticks and missed deadlines together account for the whole time.
   EXPECT_NEAR(static_cast<double>(timing.ticks + timing.missed), 300, 60);
 }
 
-// On any machine: the samples tell when each tick was and how late.
-TEST(ServoLoop, TellsTheRateAndTheLatenessOfItsOwnTicks) {
+// On any machine the samples report the time and lateness of each tick.
+TEST(ServoLoop, MeasuresRateAndLatenessOfItsTicks) {
   ServoLoop loop(std::make_unique<StillDevice>(Vec3(0.049, 0, 0)), 4000);
   loop.start();
   for (int i = 0; i < 5000 && loop.timing().ticks < 900; ++i)
@@ -126,14 +126,14 @@ TEST(ServoLoop, TellsTheRateAndTheLatenessOfItsOwnTicks) {
   const ServoTiming timing = loop.timing();
   ASSERT_EQ(samples.size(), timing.ticks);
   ASSERT_GT(samples.size(), 500U);
-  const std::size_t mark = samples.size() / 250 * 250 - 1; // it measures every 250 ticks
+  const std::size_t mark = samples.size() / 250 * 250 - 1; // the rate is measured every 250 ticks
   EXPECT_NEAR(timing.rate_hz * (samples[mark].t - samples[mark - 250].t), 250, 1e-3);
   std::vector<double> late;
   for (const ToolSample& sample : samples) late.push_back(1e-3 * sample.late_ns);
   EXPECT_NEAR(timing.late_p99, percentiles(std::move(late)).p99, 1e-6);
 }
 
-// Rests in the sphere until the test gives it another status, or lets it age.
+// Rests in the sphere until the test changes its status or lets it age.
 class FailingDevice final : public Device {
  public:
   DeviceState exchange(const Vec3& force, double) noexcept override {
@@ -154,22 +154,22 @@ void pause(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
-// What is published fades in.
+// A published snapshot fades in.
 void waitForForce(const FailingDevice& device, double force) {
   for (int i = 0; i < 5000 && std::abs(device.force_x.load() - force) > 0.02; ++i) pause(1);
   EXPECT_NEAR(device.force_x.load(), force, 0.02);
 }
 
-TEST(ServoLoop, EndsWithoutForceWhenItsDeviceFailsAndTellsWhat) {
+TEST(ServoLoop, EndsWithoutForceAndReportsTheCauseIfItsDeviceFails) {
   struct Case {
     DeviceStatus status;
     double age;
     DeviceStatus told;
   };
   for (const Case& failure : {Case{DeviceStatus::gone, 0, DeviceStatus::gone},
-                              Case{DeviceStatus::garbled, 0, DeviceStatus::garbled},
-                              Case{DeviceStatus::silent, 0, DeviceStatus::silent},
-                              Case{DeviceStatus::ok, 2 * kOldestAge, DeviceStatus::silent}}) {
+                              Case{DeviceStatus::protocol_error, 0, DeviceStatus::protocol_error},
+                              Case{DeviceStatus::timed_out, 0, DeviceStatus::timed_out},
+                              Case{DeviceStatus::ok, 2 * kMaxStateAge, DeviceStatus::timed_out}}) {
     auto owned = std::make_unique<FailingDevice>();
     FailingDevice& device = *owned;
     ServoLoop loop(std::move(owned));
@@ -189,14 +189,14 @@ TEST(ServoLoop, EndsWithoutForceWhenItsDeviceFailsAndTellsWhat) {
     pause(50);
     EXPECT_EQ(device.exchanges.load(), ended);
     EXPECT_EQ(loop.timing().device, failure.told);
-    loop.stop(); // and a loop that has ended can be started anew
+    loop.stop(); // a loop that has ended can be started again
     loop.start();
     waitForForce(device, 0.5);
     EXPECT_EQ(loop.timing().device, DeviceStatus::ok);
   }
 }
 
-TEST(ServoLoop, HoldsWithoutForceWhileItsDeviceIsCalibrated) {
+TEST(ServoLoop, WaitsWithoutForceWhileItsDeviceCalibrates) {
   auto owned = std::make_unique<FailingDevice>();
   FailingDevice& device = *owned;
   device.status = DeviceStatus::calibrating;
@@ -208,13 +208,13 @@ TEST(ServoLoop, HoldsWithoutForceWhileItsDeviceIsCalibrated) {
   EXPECT_EQ(device.force_x.load(), 0);
   EXPECT_EQ(loop.timing().device, DeviceStatus::calibrating);
   ToolSample sample;
-  EXPECT_FALSE(loop.samples().pop(sample)) << "a place that means nothing is not felt";
+  EXPECT_FALSE(loop.samples().pop(sample)) << "an invalid position is not rendered";
   device.status = DeviceStatus::ok;
   waitForForce(device, 0.5);
   EXPECT_EQ(loop.timing().device, DeviceStatus::ok);
 }
 
-TEST(ServoLoop, SendsNoForceOnceItsDeviceCalibratesInATouch) {
+TEST(ServoLoop, SendsNoForceOnceItsDeviceCalibratesInContact) {
   auto owned = std::make_unique<FailingDevice>();
   FailingDevice& device = *owned;
   ServoLoop loop(std::move(owned));
@@ -226,7 +226,7 @@ TEST(ServoLoop, SendsNoForceOnceItsDeviceCalibratesInATouch) {
   EXPECT_EQ(device.force_x.load(), 0);
 }
 
-TEST(ServoLoop, TellsItsRateWithoutTheTimeInWhichItsDeviceWasCalibrated) {
+TEST(ServoLoop, ExcludesCalibrationTimeFromItsRate) {
   auto owned = std::make_unique<FailingDevice>();
   FailingDevice& device = *owned;
   device.status = DeviceStatus::calibrating;
@@ -238,24 +238,24 @@ TEST(ServoLoop, TellsItsRateWithoutTheTimeInWhichItsDeviceWasCalibrated) {
   loop.stop();
   std::vector<ToolSample> samples;
   for (ToolSample sample; loop.samples().pop(sample);) samples.push_back(sample);
-  const std::size_t mark = samples.size() / 250 * 250 - 1; // it measures every 250 ticks
+  const std::size_t mark = samples.size() / 250 * 250 - 1; // the rate is measured every 250 ticks
   ASSERT_LT(mark, samples.size());
   const double ticks = loop.timing().rate_hz * (samples[mark].t - samples[mark - 249].t);
-  EXPECT_GT(ticks, 180); // 249, and with those 700 ms 65
+  EXPECT_GT(ticks, 180); // 249, and 65 if those 700 ms counted
   EXPECT_LT(ticks, 250);
 }
 
-TEST(ServoLoop, FeelsAStateThatIsNotTooOld) {
+TEST(ServoLoop, RendersAStateThatIsNotTooOld) {
   auto owned = std::make_unique<FailingDevice>();
   FailingDevice& device = *owned;
-  device.age = 0.5 * kOldestAge;
+  device.age = 0.5 * kMaxStateAge;
   ServoLoop loop(std::move(owned));
   loop.publish(sphereSnapshot(500));
   loop.start();
   waitForForce(device, 0.5);
 }
 
-TEST(ServoLoop, StartsAndStopsAgainAndAgain) {
+TEST(ServoLoop, StartsAndStopsRepeatedly) {
   ServoLoop loop(std::make_unique<StillDevice>(Vec3::Zero()), 10000);
   for (int i = 0; i < 20; ++i) {
     loop.start();
@@ -265,7 +265,7 @@ TEST(ServoLoop, StartsAndStopsAgainAndAgain) {
   }
 }
 
-TEST(ServoLoop, FreesSnapshotsThatItHasLeft) {
+TEST(ServoLoop, FreesSnapshotsThatItNoLongerUses) {
   ServoLoop loop(std::make_unique<StillDevice>(Vec3(0.049, 0, 0)));
   loop.start();
   std::weak_ptr<const HapticSnapshot> first;
@@ -303,7 +303,7 @@ TEST(PeriodicClock, CountsAndSkipsMissedDeadlines) {
 TEST(TimingWindow, GivesNearestRankPercentilesOfTheLastTicks) {
   TimingWindow window(100);
   EXPECT_EQ(window.late().max, 0.0);
-  for (int i = 0; i < 50; ++i) window.record(1'000'000); // fall out of the window below
+  for (int i = 0; i < 50; ++i) window.record(1'000'000); // will leave the window
   for (int i = 1; i <= 100; ++i) window.record(i);
   EXPECT_EQ(window.late().p50, 50);
   EXPECT_EQ(window.late().p99, 99);

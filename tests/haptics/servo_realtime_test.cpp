@@ -1,6 +1,5 @@
-// The servo thread after warm-up: no allocation, no lock, no page fault. Counted from inside, by
-// stand-ins for the C library's entry points; sanitizers bring their own, so there this is left
-// out.
+// The servo thread after warm-up: no allocation, no lock, no page fault. Replacements of the C
+// library's entry points count them; sanitizers bring their own, so their builds skip this test.
 #include <gtest/gtest.h>
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -16,7 +15,7 @@
 #include <mutex>
 #include <thread>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/shapes.h"
 #include "haptics/servo/servo_loop.h"
 
@@ -87,8 +86,7 @@ Cost costOfThisThread() {
 }
 
 // In and out of a solid block with a thin fin, deep into the block, through the fin in one tick,
-// off the grid and back: contact, friction, deep and held contact, a fault and the free path all
-// run.
+// off the grid and back: the path covers contact, friction, deep contact, a fault and free motion.
 class WanderingDevice final : public Device {
  public:
   static constexpr int kWarmUp = 500;
@@ -136,7 +134,7 @@ TEST(ServoThread, NeitherAllocatesNorLocksNorFaultsAfterWarmUp) {
   ServoLoop loop(std::move(owned), 5000);
   loop.publish(compileStages(scene, field));
   loop.start();
-  bool contact = false, fault = false, face = false;
+  bool contact = false, fault = false;
   for (int i = 0; i < 20000 && !device.done.load(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (i % 100 == 50) {
@@ -147,18 +145,17 @@ TEST(ServoThread, NeitherAllocatesNorLocksNorFaultsAfterWarmUp) {
     while (loop.samples().pop(sample)) {
       contact |= sample.contact;
       fault |= sample.fault;
-      face |= sample.face >= 0;
     }
   }
   loop.stop();
   ASSERT_TRUE(device.done.load());
-  EXPECT_TRUE(contact && fault && face) << contact << fault << face;
+  EXPECT_TRUE(contact && fault) << contact << fault;
   EXPECT_EQ(device.after.allocations - device.before.allocations, 0);
   EXPECT_EQ(device.after.locks - device.before.locks, 0);
   EXPECT_EQ(device.after.page_faults - device.before.page_faults, 0);
 }
 
-TEST(ServoThread, IsWatchedByCountersThatDoCount) {
+TEST(ServoThread, IsWatchedByWorkingCounters) {
   const Cost before = costOfThisThread();
   const auto block = std::make_unique<char[]>(100000);
   std::mutex mutex;

@@ -1,11 +1,11 @@
-// What a simulated run says of itself, against its own rows and an independent body.
-#include "haptics/devices/simulation.h"
+// Compares the report of a simulated run with its own rows and an independent body.
+#include "haptics/simulation/simulation.h"
 
 #include <gtest/gtest.h>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/devices/exact_step.h"
-#include "haptics/stages/limit_stage.h"
+#include "haptics/law/limit_stage.h"
+#include "haptics/loop_model/zoh_integrator.h"
 
 namespace patina {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 struct Tick {
   Vec3 tip;
   double dt;
-  Felt felt;
+  LawOutput felt;
 };
 struct Recorded {
   SimulationSpec spec;
@@ -22,12 +22,12 @@ struct Recorded {
   SimulationReport report;
 };
 
-// A damped wall below `surface`, with a fault now and then.
+// A damped wall below `surface`, with an occasional fault.
 Recorded recorded(const SimulationSpec& spec, double stiffness, double damping) {
   Recorded run{spec, {}, {}, {}};
   Vec3 last = Vec3::Zero();
   const ForceLaw law = [&](const Vec3& tip, double dt) {
-    Felt felt;
+    LawOutput felt;
     felt.depth = (tip - spec.surface).dot(spec.inward);
     felt.touching = felt.depth > 0;
     felt.fault = run.ticks.size() % 7 == 3;
@@ -63,11 +63,11 @@ SimulationSpec randomSpec(std::mt19937& random) {
   if (random() % 3 == 0) spec.jitter = PeriodRange{0.5e-3, 2e-3};
   if (random() % 3 == 0) spec.missed = MissedTick{1 + unit(random), 0.01};
   if (random() % 3 == 0) spec.teleport = Teleport{2 * unit(random), 1e-3 * randomDirection(random)};
-  if (random() % 4 == 0) spec.naive_limit = 2000 * unit(random);
+  if (random() % 4 == 0) spec.rate_limit = 2000 * unit(random);
   return spec;
 }
 
-// Lengths of ticks, forces on their way, and the body under them.
+// Checks tick lengths, delayed forces, and the body's motion.
 void expectTicks(const Recorded& run) {
   const SimulationSpec& spec = run.spec;
   const auto delay = static_cast<std::size_t>(spec.device.delay);
@@ -97,17 +97,17 @@ void expectTicks(const Recorded& run) {
       ASSERT_NEAR(read, std::round(read), 1e-6);
     }
     wanted.push_back(tick.felt.force);
-    if (spec.naive_limit) {
+    if (spec.rate_limit) {
       const Vec3 last = k > 0 ? wanted[k - 1] : Vec3(Vec3::Zero());
       const Vec3 went = k > 0 ? tick.tip - run.ticks[k - 1].tip : Vec3(Vec3::Zero());
-      wanted.back() = last + scaledTo(wanted.back() - last, *spec.naive_limit * went.norm());
+      wanted.back() = last + scaledTo(wanted.back() - last, *spec.rate_limit * went.norm());
     }
     Vec3 acts = k < delay ? Vec3(Vec3::Zero()) : wanted[k - delay];
     if (spec.saturation) acts = scaledTo(acts, *spec.saturation);
     ASSERT_LT((row.force - acts).norm(), 1e-12);
 
-    const HeldStep held = heldStep(body, dt);
-    Vec3 rest = spec.surface + spec.depth * spec.inward; // of the hand's spring
+    const ZohStep held = zohStep(body, dt);
+    Vec3 rest = spec.surface + spec.depth * spec.inward; // rest position of the hand's spring
     if (teleported) rest += spec.teleport->by;
     const Vec3 x = row.position - rest, force = row.force + spec.press * spec.inward;
     Vec3 to = rest + held.xx * x + held.xv * row.velocity + held.xf * force;
@@ -153,7 +153,7 @@ void expectReport(const Recorded& run) {
   bool teleported = false;
   for (std::size_t k = 0; k < run.rows.size(); ++k) {
     const SimulationRow& row = run.rows[k];
-    const Felt& felt = run.ticks[k].felt;
+    const LawOutput& felt = run.ticks[k].felt;
     contacts += felt.touching;
     faults += felt.fault;
     depth = std::max(depth, felt.depth);
@@ -195,7 +195,7 @@ void expectReport(const Recorded& run) {
   }
 }
 
-TEST(Simulation, ReportsWhatItsRowsSayAndMovesTheBodyExactly) {
+TEST(Simulation, ReportMatchesItsRowsAndMovesTheBodyExactly) {
   std::mt19937 random(11);
   for (int round = 0; round < 60; ++round) {
     SCOPED_TRACE(round);
@@ -207,7 +207,7 @@ TEST(Simulation, ReportsWhatItsRowsSayAndMovesTheBodyExactly) {
   }
 }
 
-// The first contact that began with a speed, until its last force has worked.
+// Finds the first contact that began with a speed, until its last force has acted.
 TEST(Simulation, RestitutionIsSpeedOutOverSpeedIn) {
   for (const int delay : {0, 1, 2}) {
     SimulationSpec spec;
@@ -219,7 +219,7 @@ TEST(Simulation, RestitutionIsSpeedOutOverSpeedIn) {
     const Recorded done = recorded(spec, 400, 0.3);
     double in = 0;
     std::optional<double> ratio;
-    const auto late = static_cast<std::size_t>(delay); // its last force acts so many ticks on
+    const auto late = static_cast<std::size_t>(delay); // its last force acts so many ticks later
     for (std::size_t k = 1; k + late < done.rows.size() && !ratio; ++k) {
       if (done.ticks[k].felt.touching && in == 0) in = done.rows[k].velocity.dot(spec.inward);
       if (done.ticks[k - 1].felt.touching && !done.ticks[k].felt.touching)
@@ -228,19 +228,19 @@ TEST(Simulation, RestitutionIsSpeedOutOverSpeedIn) {
     ASSERT_TRUE(done.report.restitution && ratio);
     EXPECT_NEAR(*done.report.restitution, *ratio, 1e-12) << delay;
     EXPECT_EQ(done.report.verdict, Verdict::kLeftSurface);
-    spec.press = 0.1; // now it may come back, and does
+    spec.press = 0.1; // the tip may return now, and does
     EXPECT_NE(recorded(spec, 400, 0.3).report.verdict, Verdict::kLeftSurface);
   }
 }
 
-TEST(Simulation, TellsItsProgressAndStopsWhereItIsCancelled) {
+TEST(Simulation, ReportsItsProgressAndStopsIfCancelled) {
   SimulationSpec spec;
   spec.seconds = 30;
   std::vector<double> told;
   std::size_t ticks = 0;
   const ForceLaw law = [&](const Vec3&, double) {
     ++ticks;
-    return Felt{};
+    return LawOutput{};
   };
   Progress all([&](double fraction, std::string_view) { told.push_back(fraction); });
   simulate(law, spec, all);
@@ -259,13 +259,14 @@ TEST(Simulation, TellsItsProgressAndStopsWhereItIsCancelled) {
   EXPECT_EQ(ticks, 2 * 8192U);
 }
 
-TEST(Simulation, RefusesEachValueThatIsOutOfRange) {
+TEST(Simulation, RefusesEachValueOutOfRange) {
   const auto refused = [](auto change) {
     SimulationSpec spec;
     change(spec);
     Progress progress;
-    EXPECT_THROW(simulate(ForceLaw([](const Vec3&, double) { return Felt{}; }), spec, progress),
-                 std::invalid_argument);
+    EXPECT_THROW(
+        simulate(ForceLaw([](const Vec3&, double) { return LawOutput{}; }), spec, progress),
+        std::invalid_argument);
   };
   const double inf = std::numeric_limits<double>::infinity();
   refused([](auto& s) { s.seconds = 2.9; });

@@ -15,9 +15,8 @@ Field ballField(double radius) { // negative: a hollow
                    static_cast<int>(2 * r + 24) / 8 * 8 + 8);
 }
 
-// How far the contact point of a tip that moves is from where it comes to rest once the tip stops
-// there, the worst in voxels. The tip runs round a ballField(radius), `depth` deep, by `step` a
-// tick.
+// Largest lag [voxel] of the contact point of a moving tip behind its rest position once the tip
+// stops there. The tip runs round a ballField(radius), `depth` deep, by `step` a tick.
 double worstLag(const HapticSnapshot& snapshot, double radius, double depth, double step) {
   const double r = std::abs(radius);
   const double at = r - std::copysign(depth, radius), turn = step / at;
@@ -34,23 +33,24 @@ double worstLag(const HapticSnapshot& snapshot, double radius, double depth, dou
     ContactMemory stopped = memory;
     Contact rest;
     for (int k = 0; k < 20; ++k) rest = tick(snapshot, stopped, tip, 1e-3);
-    if (i > 20) worst = std::max(worst, (moving.candidate - rest.candidate).norm());
+    if (i > 20)
+      worst = std::max(worst, (moving.frictionless_point - rest.frictionless_point).norm());
   }
   return worst;
 }
 
-TEST(SlideLag, AMovingContactPointIsWhereAStandingOneWouldBe) {
+TEST(SlideLag, MovingContactPointMatchesAStandingOne) {
   for (const double radius : {10.0, 20.0, 50.0, -20.0, -50.0}) {
     const auto snapshot = compileStages(sceneOf(500), ballField(radius));
     for (const double share : {0.25, 0.5, 0.75})
       for (const double step : {0.001, 0.01, 0.05, 0.1}) {
-        // A faster one is held by its ball (P04).
+        // A faster one is limited by its ball (P04).
         if (radius > 0 && step * share / (1 - share) > 0.03) continue;
         const double lag = worstLag(*snapshot, radius, share * std::abs(radius), step);
         std::cout << "radius " << radius << ", depth " << share << " of it, " << step
                   << " voxel a tick: lag " << lag << " voxel\n";
-        // What a last step may leave is 2e-3, and 5e-3 where a voxel's turn counts as a crease;
-        // about thin limbs three looks leave more.
+        // A last step may leave 2e-3, and 5e-3 where the rotation within a voxel counts as a
+        // crease; about thin limbs three evaluations leave more.
         EXPECT_LE(lag, radius == 10    ? 0.13
                        : radius == 20  ? 0.03
                        : radius == -20 ? 6e-3

@@ -1,11 +1,11 @@
 // Coupling, passivity controller and their choice, tick by tick (MATH 2.3).
-#include "haptics/stability/stabilisers.h"
+#include "haptics/law/stabilisers.h"
 
 #include <gtest/gtest.h>
 
-#include "haptics/contact/plane.h"
 #include "haptics/contact_fixture.h"
-#include "haptics/stages/coupling_stage.h"
+#include "haptics/law/coupling_stage.h"
+#include "haptics/law/plane.h"
 #include "support/constants.h"
 
 namespace patina {
@@ -39,7 +39,7 @@ TEST(Coupling, SeriesOfTwoSpringsHasNoLimitOfStiffness) {
   EXPECT_EQ(inSeries(0, 600), 0);
 }
 
-TEST(Coupling, IsASpringToTheContactPointAndADamperOfTheTip) {
+TEST(Coupling, HasASpringToTheContactPointAndADamperOfTheTip) {
   const auto snapshot = coupled(1e4, 1000, 2);
   const double k = inSeries(1e4, 1000);
   ContactMemory memory;
@@ -47,11 +47,11 @@ TEST(Coupling, IsASpringToTheContactPointAndADamperOfTheTip) {
   EXPECT_NEAR(pressTo(*snapshot, memory, -1e-3).force.z(), k * 1e-3 + 2 * 2, 1e-12);
   EXPECT_NEAR(pressTo(*snapshot, memory, -1.2e-3).force.z(), k * 1.2e-3 + 2 * .2, 1e-12);
   EXPECT_NEAR(pressTo(*snapshot, memory, -1.2e-3).force.z(), k * 1.2e-3, 1e-12);
-  // On a fast retreat it lets go, and does not pull.
+  // On a fast retreat the coupling lets go and does not pull.
   EXPECT_NEAR(pressTo(*snapshot, memory, -0.2e-3).force.z(), 0, 1e-12);
 }
 
-TEST(Coupling, TakesThePlaceOfSpringFilterAndDamping) {
+TEST(Coupling, ReplacesSpringFilterAndDamping) {
   Scene scene = sceneOf(1e5);
   scene.haptics.damping = 3;
   scene.haptics.damping_cutoff = 200;
@@ -61,7 +61,8 @@ TEST(Coupling, TakesThePlaceOfSpringFilterAndDamping) {
   for (const char* absent : {"spring", "velocity filter", "damping", "passivity"})
     EXPECT_FALSE(hasStage(*snapshot, absent)) << absent;
   EXPECT_TRUE(hasStage(*snapshot, "coupling"));
-  EXPECT_DOUBLE_EQ(snapshot->stabilisers.coupling.value().damping, 3) << "the scene's own is more";
+  EXPECT_DOUBLE_EQ(snapshot->stabilisers.coupling.value().damping, 3)
+      << "the scene's own value is larger";
   ContactMemory memory;
   pressTo(*snapshot, memory, -1e-3);
   EXPECT_NEAR(pressTo(*snapshot, memory, -1e-3).force.z(),
@@ -114,7 +115,7 @@ TEST(Stabilisers, FollowTheChoice) {
   EXPECT_TRUE(!only.coupling && only.passivity);
 }
 
-// One step of the encoder must not be felt through the damper: B step/T.
+// One step of the encoder must not be perceptible through the damper: B step/T.
 TEST(Stabilisers, CouplingIsSofterWithACoarseEncoder) {
   DeviceModel fine, coarse;
   coarse.encoder_step = 1e-4;
@@ -129,7 +130,8 @@ TEST(Stabilisers, CouplingIsSofterWithACoarseEncoder) {
       EXPECT_GE(most, virtual_damping);
       SampledLoop loop = sampledLoop(device);
       loop.virtual_damping = virtual_damping;
-      EXPECT_GE(stiffness, 0.4 * ruleOfThumb(loop) * (1 - 1e-12)) << delay << " " << damping;
+      EXPECT_GE(stiffness, 0.4 * linearStabilityLimit(loop) * (1 - 1e-12))
+          << delay << " " << damping;
       EXPECT_LE(stiffness, 0.75 * stiffnessLimit(loop)) << delay << " " << damping;
     }
 }
@@ -151,8 +153,8 @@ struct PassivityRun {
   }
 };
 
-TEST(Passivity, PaysBackWithinATickWhatWasGiven) {
-  PassivityRun run{PassivityStage({.most = 100}), {}};
+TEST(Passivity, DissipatesGeneratedEnergyInOneTick) {
+  PassivityRun run{PassivityStage({.max_damping = 100}), {}};
   const Vec3 pushes(1, 0, 0);
   EXPECT_EQ(run.tickAt(0, pushes), pushes);
   // 1 N along 0.1 mm gave 0.1 mJ; at 0.1 m/s, alpha = 1e-4 / (1e-3 * 0.01) = 10 N s/m.
@@ -160,35 +162,36 @@ TEST(Passivity, PaysBackWithinATickWhatWasGiven) {
   const Vec3 damped = run.tickAt(1e-4, Vec3::Zero());
   EXPECT_NEAR(run.memory.passivity.energy, -1e-4, 1e-18);
   EXPECT_NEAR(damped.x(), -10 * .1, 1e-12);
-  // Moving on at the same speed, the debt is paid.
+  // The generated energy is dissipated at the same speed.
   run.tickAt(2e-4, Vec3::Zero());
   EXPECT_NEAR(run.memory.passivity.energy, 0, 1e-18);
 }
 
 TEST(Passivity, NeverDampsMoreThanItsLimit) {
-  PassivityRun run{PassivityStage({.most = 5}), {}};
+  PassivityRun run{PassivityStage({.max_damping = 5}), {}};
   run.tickAt(0, Vec3(1, 0, 0));
   EXPECT_NEAR(run.tickAt(1e-4, Vec3::Zero()).x(), -5 * .1, 1e-12);
 }
 
-TEST(Passivity, ForgetsWhatWasDissipatedButNoDebt) {
-  PassivityRun run{PassivityStage({.most = 100}), {}};
+TEST(Passivity, ForgetsDissipatedEnergyButKeepsGeneratedEnergy) {
+  PassivityRun run{PassivityStage({.max_damping = 100}), {}};
   // An hour of rubbing: 1 N against the motion.
   double x = 0;
   for (int i = 0; i < 1000; ++i) run.tickAt(x += 1e-4, Vec3(-1, 0, 0));
   EXPECT_LE(run.memory.passivity.energy, 0) << "no credit";
   EXPECT_GT(run.memory.passivity.energy, -1e-12);
-  // A spring holds what it can give back and no more.
+  // A spring can return at most its stored energy.
   for (int i = 0; i < 100; ++i) run.tickAt(1e-3, Vec3(-1, 0, 0), 1000);
   EXPECT_LE(run.memory.passivity.energy, 0.5 * 1000 * 1e-6 + 1e-15);
   run.memory.passivity.energy = -1e-3;
   run.tickAt(1e-3, Vec3::Zero());
   run.tickAt(1e-3, Vec3::Zero());
-  EXPECT_DOUBLE_EQ(run.memory.passivity.energy, -1e-3) << "contact ended, the debt did not";
+  EXPECT_DOUBLE_EQ(run.memory.passivity.energy, -1e-3)
+      << "contact ended, the generated energy remains";
 }
 
-TEST(Passivity, CountsTheForceThatWasOnItsWay) {
-  PassivityRun run{PassivityStage({.most = 0, .delay = 2}), {}};
+TEST(Passivity, CountsTheDelayedForce) {
+  PassivityRun run{PassivityStage({.max_damping = 0, .delay = 2}), {}};
   // Forces 1, 2, 3, 4 each act for one step, two ticks late.
   const double pushes[] = {1, 2, 3, 4, 0, 0, 0, 0};
   const double given[] = {0, 0, 0, 1e-4, 3e-4, 6e-4, 10e-4, 10e-4};
@@ -198,7 +201,7 @@ TEST(Passivity, CountsTheForceThatWasOnItsWay) {
   }
 }
 
-TEST(Passivity, DoesNotTripOnRoundingAtRest) {
+TEST(Passivity, IgnoresRoundingAtRest) {
   HapticProperties haptics;
   haptics.stiffness = 300;
   const auto with =
@@ -212,7 +215,7 @@ TEST(Passivity, DoesNotTripOnRoundingAtRest) {
 }
 
 // The exact plane of `patina simulate` against the sampled one.
-TEST(Plane, IsTheSampledPlaneToTheSearchsTolerance) {
+TEST(Plane, MatchesTheSampledPlaneToTheSearchTolerance) {
   Scene scene = sceneOf(800);
   scene.haptics.damping = 1;
   const auto sampled = compileStages(scene, planeField());
@@ -231,7 +234,7 @@ TEST(Plane, IsTheSampledPlaneToTheSearchsTolerance) {
 }
 
 // sqrt(2 b B) over the mean age of what is applied, between a tenth of k_c and all of it.
-TEST(Stabilisers, LateralCouplingIsAsStiffAsTheDampingHolds) {
+TEST(Stabilisers, LateralCouplingIsAsStiffAsDampingAllows) {
   bool within = false;
   for (const double rate : {1000., 4000.})
     for (const int delay : {0, 1, 3, 6})
@@ -250,8 +253,8 @@ TEST(Stabilisers, LateralCouplingIsAsStiffAsTheDampingHolds) {
   EXPECT_TRUE(within);
 }
 
-// Of painted damping the least is the scene's own; the most may buzz by itself.
-TEST(Stabilisers, PredictTheWorseOfTheLeastAndTheMostDamping) {
+// The smallest painted damping is the scene's own; the largest may buzz by itself.
+TEST(Stabilisers, PredictTheWorseOfMinAndMaxDamping) {
   HapticProperties haptics;
   const DeviceModel device;
   for (const double most : {1., 20., 150., 1000.}) {

@@ -1,4 +1,4 @@
-#include "haptics/stability/stability_limit.h"
+#include "haptics/loop_model/stability_limit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/devices/exact_step.h"
+#include "haptics/loop_model/zoh_integrator.h"
 
 namespace patina {
 namespace {
@@ -26,7 +26,7 @@ double undelayedLimit(double mass, double damping, double period) {
 }
 
 // MATH 2.1.2, over the whole range of b T/m.
-TEST(StabilityLimit, IsTheClosedFormWithoutDelayAndVirtualDamping) {
+TEST(StabilityLimit, MatchesTheClosedFormWithoutDelayAndVirtualDamping) {
   for (const double mass : {.01, .1, 1.})
     for (const double share : {1e-6, 1e-4, 1e-3, .01, .1, .5, 1., 2., 5.}) {
       SampledLoop loop;
@@ -43,7 +43,7 @@ TEST(StabilityLimit, ApproachesTheRuleOfThumbForLittleDamping) {
     loop.damping = 1e-3;
     loop.virtual_damping = 2e-3;
     loop.delay = delay;
-    EXPECT_NEAR(stiffnessLimit(loop) / ruleOfThumb(loop), 1, 1e-3) << delay;
+    EXPECT_NEAR(stiffnessLimit(loop) / linearStabilityLimit(loop), 1, 1e-3) << delay;
   }
 }
 
@@ -57,7 +57,7 @@ TEST(StabilityLimit, IsZeroWithoutAnyDampingAndWithTooMuch) {
   EXPECT_EQ(stiffnessLimit(loop), 0);
 }
 
-TEST(StabilityLimit, SpectralRadiusPassesOneThere) {
+TEST(StabilityLimit, SpectralRadiusPassesOneAtTheLimit) {
   for (const int delay : {0, 2, 7})
     for (const double damping : {0., 1.}) {
       SampledLoop loop;
@@ -70,10 +70,10 @@ TEST(StabilityLimit, SpectralRadiusPassesOneThere) {
     }
 }
 
-// The loop tick by tick, from anywhere: how much it grows in one, over many.
+// Runs the loop tick by tick from a random state: its mean growth a tick over many.
 double growth(const SampledLoop& loop, double stiffness, std::mt19937& random) {
   std::normal_distribution<double> normal;
-  const HeldStep held = heldStep({loop.mass, loop.damping, loop.hand_stiffness, 0}, loop.period);
+  const ZohStep held = zohStep({loop.mass, loop.damping, loop.hand_stiffness, 0}, loop.period);
   const double time = loop.cutoff ? 1 / (2 * std::numbers::pi * *loop.cutoff) : 0;
   double x = normal(random), last = normal(random), v = normal(random), filtered = normal(random);
   std::deque<double> under_way(static_cast<std::size_t>(loop.delay), normal(random));
@@ -87,7 +87,7 @@ double growth(const SampledLoop& loop, double stiffness, std::mt19937& random) {
     last = x;
     x = held.xx * last + held.xv * v + held.xf * force;
     v = held.vx * last + held.vv * v + held.vf * force;
-    if (stiffness == 0 && loop.hand_stiffness == 0) { // where it is then changes nothing
+    if (stiffness == 0 && loop.hand_stiffness == 0) { // the position then changes nothing
       last -= x;
       x = 0;
     }
@@ -121,8 +121,8 @@ TEST(StabilityLimit, SpectralRadiusIsTheGrowthOfTheLoop) {
   }
 }
 
-// With two states the damper's loop has a closed form: v' = a v - e B v becomes unstable at -1.
-TEST(StabilityLimit, OfVirtualDampingIsNearTwoMassesATickAndFallsWithDelay) {
+// The damper's loop with two states has a closed form: v' = a v - e B v becomes unstable at -1.
+TEST(StabilityLimit, DampingLimitIsNearTwoMassesATickAndFallsWithDelay) {
   SampledLoop loop;
   double before = 1e9;
   for (const int delay : {0, 1, 2, 5, 20}) {
@@ -136,13 +136,13 @@ TEST(StabilityLimit, OfVirtualDampingIsNearTwoMassesATickAndFallsWithDelay) {
   }
 }
 
-TEST(StabilityLimit, AHandHelps) {
+TEST(StabilityLimit, RisesWithAHand) {
   const DeviceModel device;
   const double alone = stiffnessLimit(sampledLoop(device));
   EXPECT_NEAR(stiffnessLimit(sampledLoop(device, {.2, 2, 0})), 5 * alone, 0.02 * 5 * alone);
 }
 
-TEST(StabilityLimit, RefusesWhatIsNoLoop) {
+TEST(StabilityLimit, RefusesInvalidLoops) {
   SampledLoop loop;
   loop.mass = 0;
   EXPECT_THROW(stiffnessLimit(loop), std::invalid_argument);

@@ -7,9 +7,9 @@
 
 #include "geometry/mesh/shapes.h"
 #include "haptics/contact_fixture.h"
-#include "haptics/devices/exact_step.h"
-#include "haptics/stability/stabilisers.h"
-#include "haptics/stages/coupling_stage.h"
+#include "haptics/law/coupling_stage.h"
+#include "haptics/law/stabilisers.h"
+#include "haptics/loop_model/zoh_integrator.h"
 
 namespace patina {
 namespace {
@@ -22,7 +22,7 @@ double ratioAt(const Scene& scene, const Field& field, const Vec3& point) {
   return at ? stabilityRatio(*at, scene, loopLimits(scene)) : 0;
 }
 
-// Nothing stabilises it.
+// A scene without stabilisers.
 Scene bare(double stiffness) {
   Scene scene = sceneOf(stiffness);
   scene.stabilisers = Stabilisers{};
@@ -44,20 +44,20 @@ Field groove() {
                    80);
 }
 
-TEST(StabilityRatio, OfAPlaneIsTheDevicesLimitOverK) {
+TEST(StabilityRatio, IsTheDevicesLimitOverKOnAPlane) {
   for (const double stiffness : {250.0, 500.0, 2000.0})
     EXPECT_NEAR(ratioAt(bare(stiffness), planeField(), Vec3(1e-3, 0, 0)), limitWith(0) / stiffness,
                 1e-3 * limitWith(0) / stiffness);
 }
 
-TEST(StabilityRatio, DelayLowersItAsTheLoopSays) {
+TEST(StabilityRatio, FallsWithDelayLikeTheLoop) {
   Scene scene = bare(500);
   scene.device_model = DeviceModel{};
   scene.device_model->delay = 2;
   EXPECT_NEAR(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), 200.4 / 500, 1e-3);
 }
 
-TEST(StabilityRatio, DampingHelpsAlongTheNormalAndNotAcross) {
+TEST(StabilityRatio, DampingHelpsAlongTheNormalOnly) {
   Scene scene = bare(500);
   scene.haptics.damping = 2;
   EXPECT_NEAR(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), limitWith(2) / 500, 0.01);
@@ -78,7 +78,7 @@ TEST(StabilityRatio, FrictionInStickIsKInEveryDirection) {
   EXPECT_NEAR(ratioAt(damped, sphereField(), 0.03 * kSlanted), limitWith(1) / 1500, 1e-3);
 }
 
-TEST(StabilityRatio, AMagnetStrongerThanTheSurfaceDecides) {
+TEST(StabilityRatio, StrongerMagnetDecides) {
   Scene scene = bare(500);
   scene.haptics.magnet = Magnet{1e-3, 1600, false};
   EXPECT_NEAR(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), limitWith(0) / 1600, 1e-3);
@@ -86,20 +86,20 @@ TEST(StabilityRatio, AMagnetStrongerThanTheSurfaceDecides) {
   EXPECT_NEAR(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), limitWith(0) / 500, 1e-3);
 }
 
-TEST(StabilityRatio, WithoutAnyDampingNothingIsStable) {
+TEST(StabilityRatio, IsUnstableWithoutAnyDamping) {
   Scene scene = bare(500);
   scene.device_model = DeviceModel{};
   scene.device_model->damping = 0;
   EXPECT_LT(ratioAt(scene, planeField(), Vec3(1e-3, 0, 0)), 0.01);
 }
 
-// How a mass's rms velocity grows from the second second to the eighth, held at `rest` by a force
+// Growth of a mass's rms velocity from the second second to the eighth, held at `rest` by a force
 // that balances the surface's there, after a nudge: below 1 it settles, above it buzzes.
 double growthFrom(const Scene& scene, const Field& field, const Vec3& rest, const Vec3& nudge) {
   const auto snapshot = compileStages(scene, field);
   const DeviceModel device = scene.device_model.value_or(DeviceModel{});
   const double period = 1 / device.rate;
-  const HeldStep step = heldStep({device.mass, device.damping, 0, 0}, period);
+  const ZohStep step = zohStep({device.mass, device.damping, 0, 0}, period);
   ContactMemory memory;
   Vec3 press = Vec3::Zero();
   for (int i = 0; i < 20; ++i) press = -tick(*snapshot, memory, rest, period).force; // settled
@@ -122,7 +122,7 @@ void expectEnvelope(double factor, double damping, double grown) {
   EXPECT_NEAR(grown, expected, 0.02 * expected) << "at " << factor << " of the limit";
 }
 
-TEST(StabilityRatio, APlaneSettlesBelowItAndBuzzesAboveIt) {
+TEST(StabilityRatio, PlaneSettlesBelowOneAndBuzzesAbove) {
   const Vec3 point(1e-3, 2e-3, 0);
   const double limit = 500 * ratioAt(bare(500), planeField(), point);
   for (const double factor : {0.9, 1.1}) {
@@ -132,7 +132,7 @@ TEST(StabilityRatio, APlaneSettlesBelowItAndBuzzesAboveIt) {
   }
 }
 
-TEST(StabilityRatio, ABowlSettlesBelowItAndBuzzesAboveIt) {
+TEST(StabilityRatio, BowlSettlesBelowOneAndBuzzesAbove) {
   const double radius = 0.02;
   const Vec3 point = radius * kSlanted;
   const double limit = 500 * ratioAt(bare(500), bowl(radius), point);
@@ -143,7 +143,7 @@ TEST(StabilityRatio, ABowlSettlesBelowItAndBuzzesAboveIt) {
   }
 }
 
-TEST(StabilityRatio, InStickTheTangentialLoopObeysItToo) {
+TEST(StabilityRatio, TangentialLoopInStickFollowsIt) {
   const Vec3 point(1e-3, 2e-3, 0);
   const double limit = 500 * ratioAt(withFriction(bare(500), 0.8, 0.8), planeField(), point);
   for (const double factor : {0.9, 1.1}) {
@@ -154,9 +154,9 @@ TEST(StabilityRatio, InStickTheTangentialLoopObeysItToo) {
   }
 }
 
-// Under an offset the two sides of a groove hold the tip together, each with its own K: no
-// direction is stiffer than a plane, and the loop says so.
-TEST(StabilityRatio, AGrooveUnderAnOffsetIsAsStiffAsItsSides) {
+// The two sides of a groove under an offset hold the tip together, each with its own K: no
+// direction is stiffer than a plane, and the loop confirms it.
+TEST(StabilityRatio, GrooveUnderAnOffsetIsAsStiffAsItsSides) {
   Scene scene = bare(500);
   scene.haptics.offset = 2e-3;
   const auto at = StiffnessProbe(scene, groove()).at(Vec3::Zero());
@@ -179,18 +179,18 @@ TEST(StabilityRatio, AGrooveUnderAnOffsetIsAsStiffAsItsSides) {
   }
 }
 
-TEST(StabilityRatio, TheCouplingTakesItBelowTheLimitWhereverTheWallAloneIsNot) {
+TEST(StabilityRatio, CouplingStabilisesWhereTheWallAloneIsUnstable) {
   Scene scene = bare(1e5);
   const Vec3 point = 0.03 * kSlanted;
   EXPECT_LT(ratioAt(scene, sphereField(), point), 0.02);
   scene.stabilisers = Stabilisers{true, false};
-  const LoopLimits limits = loopLimits(scene);
+  const StiffnessLimits limits = loopLimits(scene);
   EXPECT_TRUE(limits.coupled());
   const CouplingPlan plan = planCoupling(scene.haptics, DeviceModel{});
   EXPECT_NEAR(ratioAt(scene, sphereField(), point),
               limitWith(plan.damping) / inSeries(1e5, plan.stiffness), 0.02);
   EXPECT_GT(ratioAt(scene, sphereField(), point), 1.5);
-  // By itself, once something is known of the device.
+  // The coupling is on by default once the scene has a device model.
   scene.stabilisers.reset();
   EXPECT_FALSE(loopLimits(scene).coupled());
   scene.device_model = DeviceModel{};
@@ -198,7 +198,7 @@ TEST(StabilityRatio, TheCouplingTakesItBelowTheLimitWhereverTheWallAloneIsNot) {
 }
 
 // K d / (R + d) along a narrow bowl, behind a coupling: damped by the square of d / (R + d).
-TEST(StabilityRatio, TheCouplingDampsWhatABowlHoldsAlongItself) {
+TEST(StabilityRatio, CouplingDampsMotionAlongABowl) {
   Scene scene = sceneOf(1e5);
   scene.device_model = DeviceModel{};
   const double radius = 1e-3;
@@ -211,8 +211,8 @@ TEST(StabilityRatio, TheCouplingDampsWhatABowlHoldsAlongItself) {
   EXPECT_NEAR(ratioAt(scene, narrow, radius * kSlanted), expected, 0.05 * expected);
 }
 
-// A force that goes round: two directions of stiffness a, coupled by c and -c.
-TEST(StabilityRatio, AWhirlNeedsDampingEvenWhereEachDirectionIsSoft) {
+// A force with curl: two directions of stiffness a, coupled by c and -c.
+TEST(StabilityRatio, WhirlNeedsDampingEvenIfEachDirectionIsSoft) {
   Scene scene = bare(500);
   LocalStiffness at;
   at.normal = Vec3::UnitZ();
@@ -220,7 +220,7 @@ TEST(StabilityRatio, AWhirlNeedsDampingEvenWhereEachDirectionIsSoft) {
     at.matrix << 300, -c, 0, c, 300, 0, 0, 0, 100;
     const double ratio = stabilityRatio(at, scene, loopLimits(scene));
     EXPECT_LT(ratio, 0.95 * limitWith(0) / 300);
-    const HeldStep step = heldStep({0.1, 0.5, 0, 0}, 1e-3);
+    const ZohStep step = zohStep({0.1, 0.5, 0, 0}, 1e-3);
     for (const double scale : {0.9 * ratio, 1.1 * ratio}) {
       Vec3 x(1e-3, 0, 0), v = Vec3::Zero();
       double early = 0, late = 0;
@@ -239,19 +239,19 @@ TEST(StabilityRatio, AWhirlNeedsDampingEvenWhereEachDirectionIsSoft) {
   }
 }
 
-TEST(StabilityRatio, AStiffDirectionCountsOnlyWhereTheTipStays) {
+TEST(StabilityRatio, StiffDirectionCountsOnlyIfTheTipStays) {
   const Scene scene = bare(500);
   LocalStiffness at;
   at.normal = Vec3::UnitZ();
-  at.matrix = Vec3(1500, -0.9 * kGrip, 500).asDiagonal();
-  at.lambda_min = -0.9 * kGrip;
+  at.matrix = Vec3(1500, -0.9 * kMinHandStiffness, 500).asDiagonal();
+  at.lambda_min = -0.9 * kMinHandStiffness;
   EXPECT_NEAR(stabilityRatio(at, scene, loopLimits(scene)), limitWith(0) / 1500, 1e-6);
-  at.lambda_min = -1.1 * kGrip;
+  at.lambda_min = -1.1 * kMinHandStiffness;
   EXPECT_NEAR(stabilityRatio(at, scene, loopLimits(scene)), limitWith(0) / 500, 1e-6);
 }
 
-// A ridge pushes the tip aside; that is no buzz, whatever its directions ask for.
-TEST(StabilityMap, WhereTheTipSlipsOffItIsAPlane) {
+// A ridge pushes the tip aside; this is no buzz, even if single directions are stiff.
+TEST(StabilityMap, UsesAPlaneWhereTheTipSlipsOff) {
   const double h = 0.5e-3;
   const Vec3 half = Vec3::Constant(0.0103);
   TriangleMesh mesh;
@@ -262,12 +262,12 @@ TEST(StabilityMap, WhereTheTipSlipsOffItIsAPlane) {
   const StabilityMap map =
       stabilityMap(bare(500), cubeField([=](const Vec3& p) { return boxDistance(p, half); }, h, 64),
                    mesh, progress);
-  EXPECT_GT(map.slipping, 5u);
-  EXPECT_LT(map.slipping, mesh.positions.size());
+  EXPECT_GT(map.unstable_count, 5u);
+  EXPECT_LT(map.unstable_count, mesh.positions.size());
   EXPECT_NEAR(map.worst_ratio, limitWith(0) / 500, 0.02);
 }
 
-TEST(StabilityMap, OfASphereIsTheSameEverywhere) {
+TEST(StabilityMap, IsConstantOnASphere) {
   const TriangleMesh mesh = icosphere(0.03, 12);
   Progress progress;
   const StabilityMap map = stabilityMap(bare(500), sphereField(), mesh, progress);
@@ -276,15 +276,15 @@ TEST(StabilityMap, OfASphereIsTheSameEverywhere) {
   for (const float ratio : map.ratio) EXPECT_NEAR(ratio, expected, 1e-3 * expected);
   EXPECT_NEAR(map.worst_ratio, expected, 1e-3 * expected);
   EXPECT_EQ(map.buzzing, 0u);
-  EXPECT_NEAR(map.limits.plain, limitWith(0), 1e-6);
+  EXPECT_NEAR(map.limits.device_only, limitWith(0), 1e-6);
   const StabilityMap stiff = stabilityMap(bare(2000), sphereField(), mesh, progress);
   EXPECT_EQ(stiff.buzzing, mesh.positions.size());
 }
 
 // Pressed to the axis of a bar the contact point may be anywhere round it: there is no stiffness to
-// judge, and the map says so.
-TEST(StabilityMap, WhereTheForceJumpsItIsUnknownAndCounted) {
-  const double stiffness = 500, depth = 1 / stiffness; // of 1 N
+// judge, and the map marks the vertex as unknown.
+TEST(StabilityMap, IsUnknownAndCountedWhereTheForceJumps) {
+  const double stiffness = 500, depth = 1 / stiffness; // at 1 N
   for (const double radius : {depth, 1.5 * depth}) {
     const Field bar =
         cubeField([=](const Vec3& p) { return std::hypot(p.x(), p.z()) - radius; }, 0.25e-3, 96);
@@ -295,7 +295,7 @@ TEST(StabilityMap, WhereTheForceJumpsItIsUnknownAndCounted) {
     Progress progress;
     const StabilityMap map = stabilityMap(bare(stiffness), bar, mesh, progress);
     const bool axis = radius == depth;
-    EXPECT_EQ(map.jumping, axis ? mesh.positions.size() : 0U);
+    EXPECT_EQ(map.discontinuous_count, axis ? mesh.positions.size() : 0U);
     EXPECT_EQ(map.buzzing, 0U);
     for (const float ratio : map.ratio) EXPECT_EQ(std::isnan(ratio), axis);
     EXPECT_EQ(std::isnan(map.worst_ratio), axis);
@@ -308,7 +308,7 @@ TEST(StabilityMap, StopsWhenCancelled) {
   EXPECT_THROW(stabilityMap(bare(500), sphereField(), icosphere(0.03, 2), progress), Cancelled);
 }
 
-TEST(StabilityMap, SaysHowFarItIs) {
+TEST(StabilityMap, ReportsItsProgress) {
   std::vector<double> fractions;
   Progress progress([&](double fraction, std::string_view) { fractions.push_back(fraction); });
   stabilityMap(bare(500), sphereField(), icosphere(0.03, 30), progress);
@@ -318,7 +318,7 @@ TEST(StabilityMap, SaysHowFarItIs) {
   EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
 }
 
-TEST(StabilityMap, AVertexThatIsNoNumberIsUnknownAndNotTheWorst) {
+TEST(StabilityMap, NonFiniteVertexIsUnknownAndNotTheWorst) {
   TriangleMesh mesh = icosphere(0.03, 2);
   mesh.positions[0] = Vec3(NAN, 0, 0);
   Progress progress;
@@ -328,20 +328,20 @@ TEST(StabilityMap, AVertexThatIsNoNumberIsUnknownAndNotTheWorst) {
   EXPECT_GT(map.worst_ratio, 0);
 }
 
-// What ties the texture of another object does not damp a smooth one.
-TEST(StabilityRatio, WithoutACouplingOfItsOwnTheDeviceAloneDampsAlongTheSurface) {
+// The coupling for the texture of another object does not damp a smooth one.
+TEST(StabilityRatio, DeviceAloneDampsAlongASurfaceWithoutItsOwnCoupling) {
   LocalStiffness hollow;
   hollow.normal = Vec3::UnitZ();
   hollow.material.stiffness = 500;
   hollow.matrix = Vec3(400, 100, 500).asDiagonal();
-  LoopLimits limits;
-  limits.plain = limits.damped = 1000;
+  StiffnessLimits limits;
+  limits.device_only = limits.damped = 1000;
   for (const double tied : {1000.0, 3000.0}) {
-    limits.tied = tied;
+    limits.coupled_normal = tied;
     limits.damped = 3000;
     EXPECT_NEAR(stabilityRatio(hollow, bare(500), limits), 1000.0 / 400, 1e-9) << tied;
   }
-  hollow.lateral = 400; // all of it is the spring's
+  hollow.lateral_stiffness = 400; // the spring provides all of it
   EXPECT_NEAR(stabilityRatio(hollow, bare(500), limits), 3000.0 / 500, 1e-9);
 }
 

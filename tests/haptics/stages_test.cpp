@@ -17,7 +17,7 @@ std::vector<std::string> stageNames(const HapticSnapshot& snapshot) {
 
 using StageNames = std::vector<std::string>;
 
-TEST(CompileStages, LeavesOutWhatTheSceneDoesNotHave) {
+TEST(CompileStages, LeavesOutAbsentFeatures) {
   const Field sphere = sphereField(0.03, 60);
   Scene scene = sceneOf(500);
   EXPECT_EQ(stageNames(*compileStages(scene, sphere)), (StageNames{"contact", "spring", "limit"}));
@@ -32,14 +32,14 @@ TEST(CompileStages, LeavesOutWhatTheSceneDoesNotHave) {
             (StageNames{"contact", "friction", "spring", "limit"}));
 }
 
-TEST(CompileStages, TakesANeutralValueForAnAbsentOne) {
+TEST(CompileStages, TreatsANeutralValueAsAbsent) {
   Scene scene = withFriction(sceneOf(500), 0, 0);
   scene.haptics.damping = 0;
   EXPECT_EQ(stageNames(*compileStages(scene, sphereField(0.03, 60))),
             (StageNames{"contact", "spring", "limit"}));
 }
 
-TEST(CompileStages, SaysWhyEachStageIsThereAndWhatItHolds) {
+TEST(CompileStages, ReportsReasonAndMemoryOfEachStage) {
   const Field sphere = sphereField(0.03, 60);
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), sphere);
   ASSERT_EQ(snapshot->why.size(), 4u);
@@ -54,8 +54,8 @@ TEST(CompileStages, SaysWhyEachStageIsThereAndWhatItHolds) {
   EXPECT_EQ(snapshot->why[1].bytes, 0u);
 }
 
-// A walk in and out of the surface, now and then a leap that faults or skips; back to `home` from
-// wherever `strayed` says.
+// A path in and out of the surface, now and then with a jump that faults or skips; it returns to
+// `home` wherever `strayed` is true.
 void expectSameForces(const HapticSnapshot& pruned, const HapticSnapshot& full, const Vec3& home,
                       const std::function<bool(const Vec3&)>& strayed) {
   EXPECT_LT(pruned.stages.size(), full.stages.size());
@@ -108,21 +108,21 @@ bool strayedFromTop(const Vec3& tip) {
   return std::max(std::abs(tip.x()), std::abs(tip.y())) > 0.015 || std::abs(tip.z()) > 4e-3;
 }
 
-TEST(CompileStages, PruningChangesNoForceWherePaintIsFelt) {
+TEST(CompileStages, PruningChangesNoForceOfPaint) {
   const Slab& made = fineSlab();
   const Scene scene = sceneOf(500);
   const auto waves = reliefImage(64, [](double u, double v) { return std::sin(20 * u + 9 * v); });
-  const FeltObject relief = feltRelief(made.faces, waves, 0.4e-3);
+  const HapticObject relief = hapticRelief(made.faces, waves, 0.4e-3);
   const auto painted = [&](MaterialChannel channel, double value) {
-    return feltMaterial(
+    return hapticMaterial(
         *coveredMap(0.5e-3, cube(0.012), channel, [=](const Vec3&) { return value; }), scene);
   };
-  FeltObject both = painted(MaterialChannel::stiffness, 900);
+  HapticObject both = painted(MaterialChannel::stiffness, 900);
   both.relief = relief.relief;
   both.highest = relief.highest;
-  for (const FeltObject& object : {relief, painted(MaterialChannel::roughness, 3e-5),
-                                   painted(MaterialChannel::stiffness, 900), both}) {
-    const std::vector<FeltObject> objects{object};
+  for (const HapticObject& object : {relief, painted(MaterialChannel::roughness, 3e-5),
+                                     painted(MaterialChannel::stiffness, 900), both}) {
+    const std::vector<HapticObject> objects{object};
     expectSameForces(*compileStages(scene, made.field, objects),
                      *withNeutralStages(scene, made.field, objects), Vec3(0, 0, 1e-3),
                      strayedFromTop);
@@ -147,19 +147,19 @@ TEST(CompileStages, PruningChangesNoForceOfAUnion) {
   const Field field =
       withSamples(std::make_shared<const SurfaceField>(mergeFields(parts, lattice)));
   const Scene scene = withFriction(sceneOf(500), 0.4, 0.3);
-  std::vector<FeltObject> plain(2);
+  std::vector<HapticObject> plain(2);
   plain[1].first_face = parts[1].first_face;
-  std::vector<FeltObject> painted = plain;
-  painted[1].material = feltMaterial(*coveredMap(0.5e-3, cube(0.02), MaterialChannel::stiffness,
-                                                 [](const Vec3&) { return 800; }),
-                                     scene)
+  std::vector<HapticObject> painted = plain;
+  painted[1].material = hapticMaterial(*coveredMap(0.5e-3, cube(0.02), MaterialChannel::stiffness,
+                                                   [](const Vec3&) { return 800; }),
+                                       scene)
                             .material;
   for (const auto& objects : {plain, painted})
     expectSameForces(*compileStages(scene, field, objects),
                      *withNeutralStages(scene, field, objects), Vec3(0, 0, 2e-3), strayedFromTop);
 }
 
-TEST(CompileStages, RefusesAFieldThatCannotServe) {
+TEST(CompileStages, RefusesUnsuitableFields) {
   EXPECT_THROW(compileStages(sceneOf(500), nullptr), std::invalid_argument);
   SurfaceField bare = *sphereField(0.03, 60);
   bare.sample.clear();
@@ -167,7 +167,7 @@ TEST(CompileStages, RefusesAFieldThatCannotServe) {
                std::invalid_argument);
 }
 
-TEST(CompileStages, ATipWiderThanTheBandIsNamedWithTheRemedy) {
+TEST(CompileStages, NamesATipWiderThanTheBandWithTheRemedy) {
   Scene scene = sceneOf(500);
   const Field sphere = sphereField(0.03, 60); // h = 1.36 mm, band 8
   scene.haptics.tip_radius = 7.5e-3;
@@ -181,25 +181,27 @@ TEST(CompileStages, ATipWiderThanTheBandIsNamedWithTheRemedy) {
   }
 }
 
-// Its radius first, then all that reaches farther; the band that it names holds it, and no less.
-TEST(CompileStages, WhatReachesBeyondTheBandIsNamedInFull) {
+// The tip's radius comes first, then all that reaches farther; the named band suffices, and no
+// smaller one does.
+TEST(CompileStages, NamesEveryFeatureBeyondTheBand) {
   Scene scene = sceneOf(500);
   scene.haptics.tip_radius = 3e-3;
   scene.haptics.offset = 2e-3;
   scene.haptics.magnet = Magnet{4e-3, 500};
-  FeltObject object = feltMaterial(*coveredMap(0.5e-3, cube(0.012), MaterialChannel::roughness,
-                                               [](const Vec3&) { return 2e-4; }),
-                                   scene);
+  HapticObject object = hapticMaterial(*coveredMap(0.5e-3, cube(0.012), MaterialChannel::roughness,
+                                                   [](const Vec3&) { return 2e-4; }),
+                                       scene);
   object.relief =
-      feltRelief(fineSlab().faces, reliefImage(64, [](double, double) { return 1; }), 1e-3).relief;
+      hapticRelief(fineSlab().faces, reliefImage(64, [](double, double) { return 1; }), 1e-3)
+          .relief;
   object.highest = 1e-3;
-  const double peak = kRoughnessPeak * object.material->most.roughness;
+  const double peak = kRoughnessPeak * object.material->max.roughness;
   const auto fieldOf = [](double band) {
     return cubeField([](const Vec3& p) { return p.z(); }, 1e-3, 64, band);
   };
   const auto refusal = [&](double band) -> std::string {
     try {
-      compileStages(scene, fieldOf(band), std::vector<FeltObject>{object});
+      compileStages(scene, fieldOf(band), std::vector<HapticObject>{object});
     } catch (const Error& error) {
       return error.what();
     }
@@ -239,7 +241,7 @@ TEST(Tick, RepeatsItselfBitForBit) {
   EXPECT_EQ(run(), run());
 }
 
-TEST(Tick, ResetIsTheFirstTickAgain) {
+TEST(Tick, ResetRestoresTheFirstTick) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), sphereField());
   ContactMemory memory;
   const Vec3 tip(0.01, 0.02, 0.018);

@@ -1,7 +1,7 @@
 // J of the closest point (F6) against closed forms.
 #include <gtest/gtest.h>
 
-#include "field/sampling/four.h"
+#include "field/store/four.h"
 #include "haptics/contact/pull_back.h"
 #include "haptics/painted_fixture.h"
 
@@ -25,8 +25,8 @@ Eigen::Matrix3d matrixOf(const SurfaceJacobian& jacobian) {
   return m;
 }
 
-// The largest error of J at random places of a ball, or of a hollow of its size. The point on the
-// surface is R / rho times as far round as the tip, rho the tip's distance from the middle.
+// Largest error of J at random points of a ball, or of a hollow of its size. The point on the
+// surface moves R / rho times as far as the tip, rho being the tip's distance from the centre.
 double ballError(int cells, bool hollow, double iso, double depth) {
   const double R = 0.03, sign = hollow ? -1 : 1, voxel = 2 * R / (cells - 16);
   const Field field = cubeField([=](const Vec3& p) { return sign * (p.norm() - R); }, voxel, cells);
@@ -44,7 +44,7 @@ double ballError(int cells, bool hollow, double iso, double depth) {
   return worst;
 }
 
-TEST(SurfaceJacobian, IsThatOfABallAndOfAHollowWhereverTheSurfaceIsSeen) {
+TEST(SurfaceJacobian, MatchesTheClosedFormOfABallAndAHollow) {
   for (const bool hollow : {false, true})
     for (const double iso : {0.0, 1.5, 4.0})
       for (const double depth : {-1.0, 0.5, 3.0, 6.0}) {
@@ -53,13 +53,13 @@ TEST(SurfaceJacobian, IsThatOfABallAndOfAHollowWhereverTheSurfaceIsSeen) {
         SCOPED_TRACE(testing::Message() << hollow << ", iso " << iso << ", depth " << depth << ": "
                                         << coarse << " " << fine);
         EXPECT_LT(coarse, 8e-3);
-        EXPECT_LT(fine, std::max(0.6 * coarse, 1e-5)); // of voxels half as large
+        EXPECT_LT(fine, std::max(0.6 * coarse, 1e-5)); // its voxels are half as large
       }
 }
 
-// The tip near the axis of a limb, at it and beyond: J is held at 4 across the axis and stays 1
+// The tip near the axis of a limb, at it and beyond: J is limited to 4 across the axis and stays 1
 // along it.
-TEST(SurfaceJacobian, IsHeldTowardsTheAxisOfALimb) {
+TEST(SurfaceJacobian, IsLimitedNearTheAxisOfALimb) {
   const double r = 6; // voxels
   const double voxel = 0.5e-3;
   const Field field =
@@ -83,8 +83,8 @@ TEST(SurfaceJacobian, IsHeldTowardsTheAxisOfALimb) {
     }
 }
 
-// Two curvatures that differ, also in sign, at random places of a ring and depths.
-TEST(SurfaceJacobian, IsThatOfARing) {
+// Two different curvatures, also in sign, at random points of a ring and depths.
+TEST(SurfaceJacobian, MatchesTheClosedFormOfARing) {
   const double R = 0.03, r = 0.012, voxel = 0.5e-3; // 24 voxels about the tube
   const Field field = cubeField(
       [=](const Vec3& p) { return std::hypot(p.head<2>().norm() - R, p.z()) - r; }, voxel, 200);
@@ -108,9 +108,9 @@ TEST(SurfaceJacobian, IsThatOfARing) {
   EXPECT_LT(worst, 0.02);
 }
 
-// An outer edge that a tip of `iso` voxels goes round stays where it is: across it J is nothing,
-// of the order of a voxel against the radius, wherever in its cells the edge lies.
-TEST(SurfaceJacobian, LeavesAnEdgeWhereItIs) {
+// An outer edge stays where it is while a tip of `iso` voxels goes round it: J across it is of the
+// order of a voxel against the radius, at any position of the edge in its cells.
+TEST(SurfaceJacobian, VanishesAcrossOuterEdges) {
   const double voxel = 0.5e-3;
   std::mt19937 random(9);
   std::uniform_real_distribution<double> any(0, 1);
@@ -147,8 +147,8 @@ TEST(SurfaceJacobian, LeavesAnEdgeWhereItIs) {
     }
 }
 
-// What the contact stage found on its way is what a look at the surface itself tells.
-TEST(SurfaceJacobian, OfAContactIsThatOfTheSurfaceItRestsOn) {
+// The contact stage's Jacobian equals the one of an evaluation at the surface itself.
+TEST(SurfaceJacobian, InContactEqualsTheOneAtTheSurface) {
   const double R = 0.03;
   const Field field = sphereField(R);
   Scene scene = sceneOf(500);
@@ -156,7 +156,7 @@ TEST(SurfaceJacobian, OfAContactIsThatOfTheSurfaceItRestsOn) {
     if (radius > 0) scene.haptics.tip_radius = radius;
     const auto map = coveredMap(field->grid.voxel, cube(R + 2e-3), MaterialChannel::stiffness,
                                 [](const Vec3& p) { return 600 + 5e3 * p.x(); });
-    const FeltObject object = feltMaterial(*map, scene);
+    const HapticObject object = hapticMaterial(*map, scene);
     const auto snapshot = compileStages(scene, field, std::span(&object, 1));
     const FieldSampler sampler(*field, Sampler::high);
     ContactMemory memory;
@@ -187,7 +187,7 @@ TEST(SurfaceJacobian, IsTheSameOnEveryProcessor) {
     BandCell cell;
     ASSERT_TRUE(sampler.cellAt(sampler.toGrid(0.0305 * n), cell));
     Eigen::Matrix<double, 4, 3> columns;
-    const double depth = k % 2 == 0 ? 2 : 60; // held as well
+    const double depth = k % 2 == 0 ? 2 : 60; // limited as well
     jacobian_plain::jacobianOf(reinterpret_cast<const Float4*>(cell.node), cell.fx, cell.fy,
                                cell.fz, n.data(), depth, 1, columns.data());
     const Eigen::Matrix3d here = matrixOf(SurfaceJacobian(cell, n, depth, 1));

@@ -1,14 +1,14 @@
-// Stages of texture, one tick of each against brute force on the height that they read.
+// Texture stages, one tick of each against brute force on their height.
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "haptics/contact/contact_memory.h"
+#include "haptics/law/contact_memory.h"
+#include "haptics/law/lateral_stage.h"
+#include "haptics/law/relief_stage.h"
 #include "haptics/painted_fixture.h"
-#include "haptics/stages/lateral_stage.h"
-#include "haptics/stages/relief_stage.h"
 
 namespace patina {
 namespace {
@@ -21,7 +21,7 @@ Contact pressed(const Vec3& place, double depth) {
   contact.touching = true;
   contact.dt = 1e-3;
   contact.tip = place - depth * Vec3::UnitZ();
-  contact.surface = contact.candidate = contact.vcp = place;
+  contact.surface = contact.frictionless_point = contact.vcp = place;
   contact.normal = Vec3::UnitZ();
   contact.depth = depth;
   contact.walls = 1;
@@ -32,10 +32,10 @@ Contact pressed(const Vec3& place, double depth) {
 }
 
 struct Tie {
-  std::array<FeltObject, 1> object;
+  std::array<HapticObject, 1> object;
   LateralStage stage;
   explicit Tie(double damping)
-      : object{FeltObject{}}, stage(nullptr, object, 0, {kPull, damping, -1}) {}
+      : object{HapticObject{}}, stage(nullptr, object, 0, {kPull, damping, -1}) {}
 };
 
 double energy(const Vec3& place, double depth, const Vec3& aside) {
@@ -43,7 +43,7 @@ double energy(const Vec3& place, double depth, const Vec3& aside) {
   return 0.5 * kPull * aside.squaredNorm() + 0.5 * kStiffness * deep * deep;
 }
 
-TEST(LateralStage, ComesToRestWhereNoPlaceAboutHasLessEnergy) {
+TEST(LateralStage, RestsAtALocalEnergyMinimum) {
   const Tie tie(0);
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(-5e-3, 5e-3);
@@ -58,21 +58,21 @@ TEST(LateralStage, ComesToRestWhereNoPlaceAboutHasLessEnergy) {
       contact = pressed(place, depth);
       tie.stage.apply(contact, memory);
     }
-    EXPECT_EQ(contact.lateral, kPull);
-    EXPECT_NEAR(contact.aside.z(), 0, 1e-15);
-    farthest = std::max(farthest, contact.aside.norm());
-    const double here = energy(place, depth, contact.aside), step = 2e-6;
+    EXPECT_EQ(contact.lateral_stiffness, kPull);
+    EXPECT_NEAR(contact.lateral_offset.z(), 0, 1e-15);
+    farthest = std::max(farthest, contact.lateral_offset.norm());
+    const double here = energy(place, depth, contact.lateral_offset), step = 2e-6;
     EXPECT_LE(here, energy(place, depth, Vec3::Zero()));
     for (int k = 0; k < 8; ++k) {
       const double angle = k * std::numbers::pi / 4;
-      const Vec3 beside = contact.aside + step * Vec3(std::cos(angle), std::sin(angle), 0);
+      const Vec3 beside = contact.lateral_offset + step * Vec3(std::cos(angle), std::sin(angle), 0);
       EXPECT_GE(energy(place, depth, beside), here - 1e-4 * step) << i; // [N] of a rest
     }
   }
   EXPECT_GT(farthest, 20e-6);
 }
 
-TEST(LateralStage, SaysWhereTheTextureRunsFasterThanTheTipIsDrawn) {
+TEST(LateralStage, ReportsTextureThatOutrunsTheTip) {
   const Tie tie(0);
   const Vec3 place(0.1, 0.05, 0);
   for (const double drawn : {0.0, 2e-3}) {
@@ -82,7 +82,7 @@ TEST(LateralStage, SaysWhereTheTextureRunsFasterThanTheTipIsDrawn) {
       Contact contact = pressed(place + 0.05e-3 * i * Vec3::UnitX(), 4e-3);
       memory.lateral.surface = contact.surface - drawn * Vec3::UnitX();
       tie.stage.apply(contact, memory);
-      runs += contact.aside.norm() > 0.1e-3; // 0.1 m/s
+      runs += contact.lateral_offset.norm() > 0.1e-3; // 0.1 m/s
       snaps += contact.snap;
     }
     EXPECT_GT(runs, 10);
@@ -90,15 +90,16 @@ TEST(LateralStage, SaysWhereTheTextureRunsFasterThanTheTipIsDrawn) {
   }
 }
 
-// The gradient of the spring's energy is what conserves it; in the papers' form the normal stays.
+// The gradient of the spring's energy makes the force conservative; the papers' form keeps the
+// normal.
 TEST(RoughnessStage, RaisesTheSurfaceByItsPattern) {
   const Field plane = planeField(0x1p-11, 16);
-  const std::array<FeltObject, 1> object{};
+  const std::array<HapticObject, 1> object{};
   const double shell = kRoughnessPeak * kRough;
   const auto forceAt = [&](ForceForm form, const Vec3& place, double depth) {
     const RoughnessStage stage(FieldSampler(*plane, Sampler::high), object, shell, form);
     Contact contact = pressed(place, depth + shell);
-    contact.candidate.z() = contact.vcp.z() = shell;
+    contact.frictionless_point.z() = contact.vcp.z() = shell;
     ContactMemory memory;
     stage.apply(contact, memory);
     return Vec3(kStiffness * contact.depth * contact.normal);
@@ -127,11 +128,11 @@ TEST(RoughnessStage, RaisesTheSurfaceByItsPattern) {
   EXPECT_EQ(forceAt(ForceForm::literal, Vec3(1e-3, 0, 0), -shell - 1e-6), Vec3::Zero());
 }
 
-// K05: between two parts, say. Relief gives it none.
-TEST(ReliefStage, AContactWithoutADirectionHasNone) {
+// K05: a contact without a direction, such as between two parts. Relief gives it none.
+TEST(ReliefStage, HasNoEffectOnAContactWithoutDirection) {
   const Slab& plane = fineSlab();
-  const std::array<FeltObject, 1> object{
-      feltRelief(plane.faces, reliefImage(64, [](double u, double) { return u; }), 2e-3)};
+  const std::array<HapticObject, 1> object{
+      hapticRelief(plane.faces, reliefImage(64, [](double u, double) { return u; }), 2e-3)};
   const FieldSampler sampler(*plane.field, Sampler::high);
   const auto reliefs = std::make_shared<const Reliefs>(sampler, object);
   const ReliefStage stage(reliefs, 2e-3, ForceForm::conservative);
@@ -145,15 +146,15 @@ TEST(ReliefStage, AContactWithoutADirectionHasNone) {
   EXPECT_NEAR(contact.depth, 3e-3, 1e-12); // beneath the shell
 }
 
-// Nor is it the same mirrored there, or highest.
-TEST(RoughPattern, DoesNotKnowTheOriginOfItsObject) {
+// The pattern has no mirror symmetry and no maximum at the origin.
+TEST(RoughPattern, HasNoSymmetryAboutTheOrigin) {
   std::mt19937 random(6);
   double squares = 0;
   for (int i = 0; i < 500; ++i) {
     const Vec3 p = 5e-3 * randomDirection(random);
     squares += std::pow(roughPattern(p).height - roughPattern(-p).height, 2);
   }
-  EXPECT_GT(squares / 500, 0.5); // 2 if nothing binds the two
+  EXPECT_GT(squares / 500, 0.5); // 2 if the two are uncorrelated
   EXPECT_LT(std::abs(roughPattern(Vec3::Zero()).height), 0.7 * kRoughnessPeak);
 }
 

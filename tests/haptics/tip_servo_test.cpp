@@ -1,4 +1,4 @@
-// The servo as the window has it: any thread publishes, and loops come and go meanwhile.
+// The servo in the window: any thread publishes, and loops come and go meanwhile.
 #include "haptics/servo/tip_servo.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-#include "haptics/devices/simulated_hand.h"
+#include "haptics/simulation/simulated_hand.h"
 
 namespace patina {
 namespace {
@@ -39,7 +39,7 @@ double forceSoon(TipServo& servo) {
   return samples.empty() ? -1 : samples.back().force.norm();
 }
 
-TEST(TipServo, ANewLoopFeelsWhatWasPublishedLast) {
+TEST(TipServo, NewLoopRendersTheLastSnapshot) {
   const auto first = ball();
   TipServo servo;
   servo.publish(ofStiffness(500, first));
@@ -52,23 +52,23 @@ TEST(TipServo, ANewLoopFeelsWhatWasPublishedLast) {
   EXPECT_NEAR(forceSoon(servo), 0.3, 0.02);
 }
 
-TEST(TipServo, TheTargetMovesTheTipOfTheLoopThatIsOpen) {
+TEST(TipServo, TargetMovesTheTipOfTheOpenLoop) {
   TipServo servo;
-  servo.setTarget(Vec3(1, 1, 1)); // nothing is there to move
+  servo.setTarget(Vec3(1, 1, 1)); // no loop exists to move
   openAt(servo, Vec3(0.03, 0, 0));
   servo.setTarget(Vec3(0.03, 0, 0.01));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_LT((servo.drain().back().tip - Vec3(0.03, 0, 0.01)).norm(), 1e-6);
 }
 
-TEST(TipServo, ALeapThroughABallIsWithoutForce) {
+TEST(TipServo, JumpThroughABallHasNoForce) {
   TipServo servo;
   servo.publish(ofStiffness(500, ball()));
   openAt(servo, Vec3(0.021, 0, 0));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   (void)servo.drain();
-  servo.leapTarget(Vec3(-0.021, 0, 0), 1);
-  servo.passTarget(Vec3(-0.019, 0, 0), 1);
+  servo.jumpTarget(Vec3(-0.021, 0, 0), 1);
+  servo.addWaypoint(Vec3(-0.019, 0, 0), 1);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   const std::vector<ToolSample> samples = servo.drain();
   ASSERT_FALSE(samples.empty());
@@ -80,7 +80,7 @@ TEST(TipServo, ALeapThroughABallIsWithoutForce) {
   EXPECT_NEAR(samples.back().force.x(), -0.5, 0.02);
 }
 
-TEST(TipServo, AnotherThreadPublishesWhileLoopsComeAndGo) { // T-K20; for the thread sanitizer
+TEST(TipServo, OtherThreadMayPublishWhileLoopsComeAndGo) { // T-K20; for the thread sanitizer
   const auto field = ball();
   TipServo servo;
   std::atomic<bool> done{false};
@@ -104,7 +104,7 @@ TEST(TipServo, AnotherThreadPublishesWhileLoopsComeAndGo) { // T-K20; for the th
   EXPECT_GT(published, 10);
 }
 
-TEST(TipServo, DrainingFreesWhatTheServoHasLeft) {
+TEST(TipServo, DrainingFreesUnusedSnapshots) {
   TipServo servo;
   openAt(servo, Vec3(0.03, 0, 0));
   const auto field = ball();
@@ -114,7 +114,7 @@ TEST(TipServo, DrainingFreesWhatTheServoHasLeft) {
     first = snapshot;
     servo.publish(snapshot);
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(20)); // it is felt
+  std::this_thread::sleep_for(std::chrono::milliseconds(20)); // the force acts
   servo.publish(ofStiffness(600, field));
   for (int i = 0; i < 1000 && !first.expired(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

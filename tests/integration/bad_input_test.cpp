@@ -67,7 +67,7 @@ TEST_F(BadInput, TablesNameTheLineAndTheDecimalComma) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-TEST_F(BadInput, MissingFilesAreNamed) {
+TEST_F(BadInput, NamesMissingFiles) {
   expectOneLineError(feel(folder / "none.ply", path), {"none.ply"});
   expectOneLineError(feel(box, folder / "none.csv"), {"none.csv"});
   expectOneLineError(feel(folder.path().string(), path),
@@ -76,23 +76,23 @@ TEST_F(BadInput, MissingFilesAreNamed) {
   expectOneLineError(run({"info", folder.write("empty.vti", "")}), {"empty.vti"});
 }
 
-TEST_F(BadInput, OutputsThatCannotBeWrittenAreNamed) {
+TEST_F(BadInput, NamesUnwritableOutputs) {
   expectOneLineError(run({"feel", box, "--path", path, "-o", folder / "no/such/f.csv"}),
                      {"f.csv", "no folder"});
   expectOneLineError(run({"feel", box, "--path", path, "-o", folder.path().string()}),
                      {"it is a folder"});
   expectOneLineError(run({"field", box, "-o", folder / "field.raw"}), {".vti"});
-  // Renaming a file over a device would take the device away.
+  // Renaming a file over a device would remove the device.
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   expectOneLineError(run({"feel", box, "--path", path, "-o", folder / "pipe"}),
-                     {"pipe", "nobody reads"});
-  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe")); // as it was
+                     {"pipe", "without a reader"});
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe")); // it is unchanged
   expectOneLineError(run({"model", "box", "-o", folder / "box.xyz"}), {"box.xyz"});
   expectOneLineError(run({"export", box, "-o", box, "--resolution", "40"}), {"box.obj"});
   expectOneLineError(run({"man", "-o", box}), {"box.obj"});
 }
 
-TEST_F(BadInput, AWorkspacesOwnFilesAreNoOutputs) {
+TEST_F(BadInput, RefusesAWorkspacesOwnFilesAsOutputs) {
   const std::string scene = folder / "scene";
   ASSERT_EQ(run({"scene", "-o", scene, "--add", box}).exit, 0);
   const std::string heights = folder.write("heights.csv", [] {
@@ -107,12 +107,12 @@ TEST_F(BadInput, AWorkspacesOwnFilesAreNoOutputs) {
   EXPECT_EQ(run({"info", scene}).exit, 0);
 }
 
-TEST_F(BadInput, ADeviceWithoutAnEndIsNotReadUntilMemoryEnds) {
+TEST_F(BadInput, DoesNotReadAnEndlessDeviceUntilMemoryEnds) {
   std::filesystem::create_symlink("/dev/zero", folder / "zero.ply");
   expectOneLineError(run({"info", folder / "zero.ply"}), {"zero.ply", "does not end"});
 }
 
-TEST_F(BadInput, OptionsWithoutEffectAreWarnedOf) {
+TEST_F(BadInput, WarnsOfOptionsWithoutEffect) {
   const auto warned = [&](const std::vector<std::string>& more, const std::string& part) {
     std::vector<std::string> words = {"feel", box, "--path", path, "-o", folder / "f.csv"};
     words.insert(words.end(), more.begin(), more.end());
@@ -131,7 +131,7 @@ TEST_F(BadInput, OptionsWithoutEffectAreWarnedOf) {
   EXPECT_EQ(quiet.err.find("no effect"), std::string::npos) << quiet.err;
 }
 
-TEST_F(BadInput, NamesKeepTheirLettersAndPosesTheirMeasure) {
+TEST_F(BadInput, KeepsLettersOfNamesAndUnitsOfPoses) {
   const std::string cup = folder / "Gef\xc3\xa4\xc3\x9f.obj", scene = folder / "w";
   std::filesystem::copy(box, cup);
   ASSERT_EQ(run({"scene", "-o", scene, "--add", cup}).exit, 0);
@@ -139,12 +139,12 @@ TEST_F(BadInput, NamesKeepTheirLettersAndPosesTheirMeasure) {
   expectOneLineError(run({"scene", "-o", scene, "--add", box + "@"}), {"no pose after the '@'"});
   const std::string far = folder.write("far.txt", "1 0 0 1e300\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   expectOneLineError(run({"scene", "-o", scene, "--add", box + "@" + far}), {"1e+300", "farthest"});
-  // Equal meshes are stored once, whatever their names.
+  // Equal meshes are stored once, also under different names.
   ASSERT_EQ(run({"scene", "-o", scene, "--add", cup, "--add", box}).exit, 0);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scene + "/meshes"), {}), 1);
 }
 
-TEST_F(BadInput, WordsOfTheCommandLineAreChecked) {
+TEST_F(BadInput, ChecksTheCommandLinesWords) {
   expectOneLineError(run({}), {"--help"});
   expectOneLineError(run({"feeel", box}), {"feeel"});
   expectOneLineError(run({"feel", box, "-o", out}), {"--path", "missing"});
@@ -180,7 +180,7 @@ TEST_F(BadInput, WordsOfTheCommandLineAreChecked) {
                      {"band", "offset", "magnet"});
 }
 
-TEST_F(BadInput, UnknownOptionsAndSurplusInputsAreNamed) {
+TEST_F(BadInput, NamesUnknownOptionsAndSurplusInputs) {
   expectOneLineError(run({"feel", box, "--path", path, "-o", out, "--banana", "1mm"}),
                      {"unknown option --banana; see patina feel --help"});
   expectOneLineError(run({"info", box, "--offset=1mm"}), {"unknown option --offset;"});
@@ -188,14 +188,14 @@ TEST_F(BadInput, UnknownOptionsAndSurplusInputsAreNamed) {
   expectOneLineError(run({"info", box, "b"}), {"one FILE at a time: 'b' is one too many"});
   expectOneLineError(run({"latency-test", "b"}), {"'b' is one word too many"});
   expectOneLineError(run({"devices", "b"}), {"'b' is a folder for --install-udev alone"});
-  // A value may look like an option or an input, and may hang on its option.
+  // A value may look like an option or an input, and may be attached to its option.
   EXPECT_EQ(run({"info", "--voxel=1mm", box}).exit, 0);
   EXPECT_EQ(run({"feel", "--path", path, box, "-o" + out}).exit, 0);
   expectOneLineError(run({"render", box, "-o", folder / "p.png", "--view", "-w"}), {"--view"});
 }
 
-// As of a shell's variable that is not set.
-TEST_F(BadInput, AnEmptyWordIsNoValue) {
+// An unset shell variable gives such a word.
+TEST_F(BadInput, EmptyWordIsNoValue) {
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{"model", "sphere", "-o", ""},
                                              {"model", "sphere", "--output="},
@@ -204,7 +204,7 @@ TEST_F(BadInput, AnEmptyWordIsNoValue) {
   expectOneLineError(run({"info", ""}), {"FILE: '' is no value"});
 }
 
-TEST_F(BadInput, MistypedWordsAreToldWhatTheyMayHaveMeant) {
+TEST_F(BadInput, SuggestsCorrectionsForMistypedWords) {
   const auto line = [](const std::vector<std::string>& words) {
     const Outcome outcome = run(words);
     EXPECT_EQ(outcome.exit, 2);
@@ -222,20 +222,15 @@ TEST_F(BadInput, MistypedWordsAreToldWhatTheyMayHaveMeant) {
                      {"unknown model 'spere'; did you mean 'sphere'?", "galleon"});
 }
 
-TEST_F(BadInput, OptionsOfAnotherModeAreWarnedOf) {
+TEST_F(BadInput, WarnsOfOptionsOfAnotherMode) {
   const auto warned = [&](const std::vector<std::string>& words, const std::string& line) {
     const Outcome outcome = run(words);
     EXPECT_NE(outcome.err.find("warning: " + line), std::string::npos) << outcome.err;
   };
   warned({"latency-test", "--seconds", "0.01", "--load", "3"},
-         "--load has no effect without --wire");
-  warned({"latency-test", "--seconds", "0.01", "--wire", "--rate", "500"},
-         "--rate has no effect with --wire");
-  warned({"simulate-device", "falcon", "--seconds", "0.01", "--skew", "5"},
-         "--skew has no effect on a falcon");
-#ifdef PATINA_HAS_ACQUISITION
-  warned({"simulate-device", "probe", "--seconds", "0.01", "--refuse", "claim"},
-         "--refuse has no effect on a probe");
+         "--load has no effect without --emulated-falcon");
+  warned({"latency-test", "--seconds", "0.01", "--emulated-falcon", "--rate", "500"},
+         "--rate has no effect with --emulated-falcon");
   warned({"simulate", "--plane", "--seconds", "3", "--voxel", "1mm"},
          "--voxel has no effect with --plane");
   warned({"simulate-scan", box, "-o", folder / "poses", "--seconds", "1", "--blur", "2"},
@@ -247,17 +242,16 @@ TEST_F(BadInput, OptionsOfAnotherModeAreWarnedOf) {
          "--rate has no effect beside frames.csv");
   warned({"fit-texture", box, "-o", folder / "t.json", "--seed", "7"},
          "--seed has no effect without --kind spectrum");
-#endif
 }
 
-TEST_F(BadInput, TheVoxelIsWhatWasSaidInWhateverOrder) {
+TEST_F(BadInput, VoxelOptionCountsInAnyOrder) {
   const Json first = runJson({"info", box, "--voxel", "2mm", "--resolution", "60"}),
              last = runJson({"info", box, "--resolution", "60", "--voxel", "2mm"});
   EXPECT_DOUBLE_EQ(first.at("field").at("voxel").asNumber(), 2e-3);
   EXPECT_DOUBLE_EQ(last.at("field").at("voxel").asNumber(), 2e-3);
 }
 
-TEST_F(BadInput, VolumesWithoutAPlaceOrASizeAreRefused) {
+TEST_F(BadInput, RefusesVolumesWithoutOriginOrSpacing) {
   const auto volume = [&](const std::string& origin, const std::string& spacing) {
     std::string values;
     for (int i = 0; i < 27; ++i) values += i == 13 ? "-1 " : "1 ";
@@ -286,21 +280,21 @@ TEST_F(BadInput, BytesThatMoveTheCursorDoNotReachTheTerminal) {
   EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
 }
 
-TEST_F(BadInput, ModelsThatNoFileHoldsAreNotMade) {
+TEST_F(BadInput, RefusesModelsThatNoFileCanHold) {
   for (const char* radius : {"1e308", "1e-320", "-1", "inf"})
     expectOneLineError(run({"model", "sphere", "-o", folder / "b.ply", "--radius", radius}),
                        {"--radius", radius});
   EXPECT_FALSE(std::filesystem::exists(folder / "b.ply"));
 }
 
-TEST_F(BadInput, OptionsWithoutTheirValueAndFlagsWithOneAreNamed) {
+TEST_F(BadInput, NamesOptionsWithoutAValueAndFlagsWithOne) {
   expectOneLineError(run({"info", box, "--voxel"}), {"--voxel", "LENGTH is missing"});
   expectOneLineError(run({"info", box, "--json=yes"}), {"--json takes no value"});
   // After "--" everything is an input.
   expectOneLineError(run({"info", "--", "--voxel"}), {"--voxel: no such"});
 }
 
-TEST_F(BadInput, TipsAndPointsThatAreNotNumbersAreCountedAndWarnedOf) {
+TEST_F(BadInput, CountsNonFiniteTipsAndPointsAndWarns) {
   const std::string tips = folder.write(
       "bad.csv", "t [s],x [m],y [m],z [m]\n0,0,0,0.1\n1,nan,0,0\n2,0,inf,0\n3,-nan,0,0\n");
   const Outcome felt = run({"feel", box, "--path", tips, "-o", out, "--json"});
@@ -322,7 +316,7 @@ TEST_F(BadInput, TipsAndPointsThatAreNotNumbersAreCountedAndWarnedOf) {
   }
 }
 
-TEST_F(BadInput, FieldFilesSayWhatIsWrongWithThem) {
+TEST_F(BadInput, NamesTheFaultOfAFieldFile) {
   const std::string field = folder / "box.vti";
   ASSERT_EQ(run({"field", box, "-o", field, "--resolution", "40"}).exit, 0);
   expectOneLineError(run({"info", field, "--iso", "5"}), {"box.vti", "--iso 5", "between -0.0"});
@@ -338,7 +332,7 @@ TEST_F(BadInput, FieldFilesSayWhatIsWrongWithThem) {
       std::string::npos);
 }
 
-TEST_F(BadInput, GridsThatAreTooFineSayWhatToDo) {
+TEST_F(BadInput, GivesTheRemedyForTooFineGrids) {
   const std::string field = folder / "f.vti";
   expectOneLineError(run({"field", box, "-o", field, "--voxel", "1e-9"}),
                      {"choose a larger voxel or --unit"});
@@ -347,7 +341,7 @@ TEST_F(BadInput, GridsThatAreTooFineSayWhatToDo) {
                      {"--resolution", "between 8 and 4095"});
 }
 
-TEST_F(BadInput, NonFiniteVerticesAreLeftOutCountedAndWarnedOf) {
+TEST_F(BadInput, LeavesOutNonFiniteVerticesAndWarns) {
   std::string text = readFile(box) + "v nan 0 0\nv 1 inf 0\n";
   const std::size_t n = static_cast<std::size_t>(std::count(text.begin(), text.end(), 'v'));
   text += "f 1 2 " + std::to_string(n) + "\nf 1 2 " + std::to_string(n - 1) + "\n";
@@ -362,14 +356,15 @@ TEST_F(BadInput, NonFiniteVerticesAreLeftOutCountedAndWarnedOf) {
     EXPECT_EQ(json.at("field").at("dropped_triangles").asInteger(), 2);
   }
   const std::string only = folder.write("only.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  expectOneLineError(run({"info", only}), {"only.obj", "no triangle", "1 with a NaN"});
-  expectOneLineError(run({"render", only, "-o", folder / "p.png"}), {"only.obj", "no triangle"});
+  expectOneLineError(run({"info", only}), {"only.obj", "no usable triangle", "1 with a NaN"});
+  expectOneLineError(run({"render", only, "-o", folder / "p.png"}),
+                     {"only.obj", "no usable triangle"});
   ASSERT_EQ(run({"scene", "-o", folder / "bare"}).exit, 0);
   expectOneLineError(run({"render", folder / "bare", "-o", folder / "p.png"}), {"no object"});
   EXPECT_FALSE(std::filesystem::exists(folder / "p.png"));
 }
 
-TEST_F(BadInput, VolumesFromElsewhereNeedAValue) {
+TEST_F(BadInput, ForeignVolumesNeedAnIsoValue) {
   const std::string volume = folder.write(
       "volume.vti",
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\" "

@@ -1,5 +1,4 @@
-// What `patina calibrate` tells of a probe, what it doubts and what it refuses.
-#ifdef PATINA_HAS_ACQUISITION
+// `patina calibrate` reports a probe's tip, warns of doubtful values and refuses invalid ones.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,8 +16,8 @@
 namespace patina::test {
 namespace {
 
-TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
-  // A probe that leans to all sides about a tip 120 mm below its markers.
+TEST_F(Scans, CalibrateFindsATipAndRefusesInsufficientPoses) {
+  // A probe tilted to all sides about a tip 120 mm below its markers.
   std::string text;
   for (int i = 0; i < 40; ++i) {
     const double around = 0.8 * i, leaning = 0.1 + 0.015 * i;
@@ -39,7 +38,7 @@ TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
   EXPECT_NEAR(parameters.at("z").at("value").asNumber(), -0.12, 1e-5);
   EXPECT_LT(parameters.at("z").at("deviation").asNumber(), 1e-4);
   EXPECT_NEAR(parseJson(readFile(rig), rig).at("tip").asArray()[2].asNumber(), -0.12, 1e-5);
-  // Two digits of a deviation, and as many behind the point of its value.
+  // A deviation has two digits, and its value as many decimals.
   const std::string shown = run({"calibrate", poses, "-o", rig}).out;
   std::smatch z;
   ASSERT_TRUE(std::regex_search(shown, z, std::regex(R"(z\s+-1\d\d\.(\d+) \+- 0\.(0*[1-9]\d) mm)")))
@@ -56,7 +55,7 @@ TEST_F(Scans, CalibrateTellsATipAndRefusesWhatTellsNone) {
   expectOneLineError(run({"calibrate", folder / "none", "--board", "chess", "-o", camera}),
                      {"--board", "chessboard:COLUMNSxROWS"});
   (void)simulate({"--seconds", "3"}); // upright and moving
-  expectOneLineError(run({"calibrate", scan, "--still", "-o", rig}), {"scan", "held still"});
+  expectOneLineError(run({"calibrate", scan, "--accelerometers", "-o", rig}), {"scan", "held still"});
   // The hand moves: whatever point fits best is no tip.
   expectOneLineError(run({"calibrate", scan + "/poses.tum", "-o", rig}), {"poses.tum", "tip"});
   EXPECT_FALSE(std::filesystem::exists(rig));
@@ -90,27 +89,27 @@ void writeHeld(const std::filesystem::path& folder, double unit) {
   writeFileAtomically(folder / "probe.csv", probe);
 }
 
-TEST_F(Scans, CalibrateTellsGravityAndDoubtsAnotherUnit) {
+TEST_F(Scans, CalibrateFindsGravityAndWarnsOfAnotherUnit) {
   const std::string held = folder / "held", rig = folder / "rig.json";
   writeHeld(held, 1);
-  const Outcome told = run({"calibrate", held, "--still", "-o", rig});
+  const Outcome told = run({"calibrate", held, "--accelerometers", "-o", rig});
   EXPECT_EQ(told.exit, 0) << told.err;
   EXPECT_NE(told.err.find("without --rig"), std::string::npos) << told.err;
   const Json gravity = parseJson(readFile(rig), rig).at("gravity");
   EXPECT_NEAR(gravity.asArray()[1].asNumber(), 9.80665 * 0.85 / std::sqrt(0.01 + 0.7225 + 0.25),
               0.02);
-  const Outcome beside = run({"calibrate", held, "--still", "--rig", rig, "-o", rig});
+  const Outcome beside = run({"calibrate", held, "--accelerometers", "--rig", rig, "-o", rig});
   EXPECT_EQ(beside.exit, 0);
   EXPECT_EQ(beside.err.find("--rig"), std::string::npos) << beside.err;
 
   std::filesystem::remove(rig);
   writeHeld(held, 1 / 9.80665); // in g
-  expectOneLineError(run({"calibrate", held, "--still", "-o", rig}),
+  expectOneLineError(run({"calibrate", held, "--accelerometers", "-o", rig}),
                      {"probe.csv", "a1u", "gravity reads 1.0", "9.81", "m/s^2"});
   EXPECT_FALSE(std::filesystem::exists(rig));
 }
 
-TEST_F(Scans, CalibrateSaysWhoseTipItTakesWithForces) {
+TEST_F(Scans, CalibrateNamesTheRigOfItsTipWithForces) {
   const std::string table = folder.write("weights.csv", "force [N],reading\n0,1\n1,3\n2,5\n4,9\n"),
                     rig = folder / "rig.json";
   const Outcome told = run({"calibrate", table, "--force", "-o", rig});
@@ -119,7 +118,7 @@ TEST_F(Scans, CalibrateSaysWhoseTipItTakesWithForces) {
       << told.err;
 }
 
-// Boards as OpenCV had them before 4.6, in files as cameras name them.
+// ChArUco boards of OpenCV before 4.6, in files named like a camera's.
 class BoardPictures : public Scans {
  protected:
   void SetUp() override {
@@ -147,7 +146,7 @@ class BoardPictures : public Scans {
   std::string pictures;
 };
 
-TEST_F(BoardPictures, CalibrateACameraWhateverTheyAreCalledAndSayWhatIsLeftOut) {
+TEST_F(BoardPictures, CalibrateACameraUnderAnyNameAndNameLeftOutFiles) {
   const std::string camera = folder / "camera.yml";
   const Outcome told = run({"calibrate", pictures, "--board", kBoard, "-o", camera});
   EXPECT_EQ(told.exit, 0) << told.err;
@@ -162,7 +161,7 @@ TEST_F(BoardPictures, CalibrateACameraWhateverTheyAreCalledAndSayWhatIsLeftOut) 
   EXPECT_LT(live.at("rms_px").asNumber(), 0.35);
 }
 
-TEST_F(BoardPictures, OfAnotherBoardAreDoubtedAndNothingIsWritten) {
+TEST_F(BoardPictures, CauseAWarningAndNoFileIfTheBoardDiffers) {
   const std::string camera = folder / "camera.yml";
   const Outcome told =
       run({"calibrate", pictures, "--board", "charuco:7x8:25mm:18.75mm:4x4_50", "-o", camera});
@@ -175,4 +174,3 @@ TEST_F(BoardPictures, OfAnotherBoardAreDoubtedAndNothingIsWritten) {
 
 } // namespace
 } // namespace patina::test
-#endif

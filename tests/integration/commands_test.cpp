@@ -19,7 +19,7 @@ const char* const kForceHeader =
 const char* const kSampleHeader =
     "x [m],y [m],z [m],phi [m],nx,ny,nz,face,cx [m],cy [m],cz "
     "[m],in_band,stiffness [N/m],friction.static,friction.dynamic,damping "
-    "[N s/m],roughness [m],relief [m],red,green,blue,cover";
+    "[N s/m],roughness [m],relief [m],red,green,blue,cover,texture [m]";
 
 void expectKeys(const Json& json, const std::vector<std::string>& keys) {
   for (const std::string& key : keys) EXPECT_NE(json.find(key), nullptr) << key;
@@ -73,7 +73,7 @@ TEST_F(Commands, InfoReportsTheMeshItsLayersAndItsStages) {
   EXPECT_EQ(std::count(stages.begin(), stages.end(), "limit"), 1);
 }
 
-TEST_F(Commands, InfoSaysWhatIsOpen) {
+TEST_F(Commands, InfoReportsOpenEdges) {
   const auto sidesOf = [](const Json& info) { return info.at("components_sides").dump(-1); };
   EXPECT_EQ(sidesOf(runJson({"info", sphere, "--no-field"})),
             R"([{"sides":"closed","triangles":8000}])");
@@ -94,8 +94,8 @@ TEST_F(Commands, InfoSaysWhatIsOpen) {
             R"([{"sides":"closed","triangles":8000},{"sides":"two-sided","triangles":2}])");
 }
 
-// 3 mm below its front all over, and out again beyond its rim.
-TEST_F(Commands, AnOpenTerrainIsFeltFromItsFront) {
+// The path runs 3 mm below its whole front, and out again beyond its rim.
+TEST_F(Commands, OpenTerrainIsTouchedFromItsFront) {
   std::string mesh, tip = "t [s],x [m],y [m],z [m]\n";
   constexpr int kSide = 40;
   const auto height = [](double x, double y) {
@@ -148,7 +148,7 @@ TEST_F(Commands, FieldIsWrittenAndOpensAgain) {
   EXPECT_EQ(info.at("kind").asString(), "field");
   EXPECT_EQ(info.at("field").at("band_voxels").asNumber(), 8);
   EXPECT_FALSE(info.at("layers").asArray().empty());
-  EXPECT_TRUE(info.at("stages").asArray().empty()); // those of no servo: it has no scene
+  EXPECT_TRUE(info.at("stages").asArray().empty()); // there is no scene, so no servo's stages
   std::filesystem::copy_file(field, folder / "UPPER.VTI");
   EXPECT_EQ(runJson({"info", folder / "UPPER.VTI"}).at("layers").dump(), info.at("layers").dump());
   EXPECT_EQ(info.at("field").at("voxel").asNumber(), report.at("voxel").asNumber());
@@ -156,7 +156,7 @@ TEST_F(Commands, FieldIsWrittenAndOpensAgain) {
   EXPECT_NEAR(info.at("bounds").asArray()[1].asArray()[0].asNumber(), 0.02, 1e-4);
 }
 
-TEST_F(Commands, SampleIsExactAboutThePointsOnTheSphere) {
+TEST_F(Commands, SampleIsExactOnASphere) {
   const std::string points =
       folder.write("points.csv", "x [m],y [m],z [m]\n0,0,0.021\n0.019,0,0\n0,0.5,0\n0,0,0.001\n");
   const std::string samples = folder / "samples.csv";
@@ -182,7 +182,54 @@ TEST_F(Commands, SampleIsExactAboutThePointsOnTheSphere) {
   }
 }
 
-TEST_F(Commands, SampleOfAFieldFileAgreesWithThatOfItsMesh) {
+TEST_F(Commands, SampleAlongALineIsTheDistanceFromASphere) {
+  const std::string samples = folder / "line.csv";
+  const Json report =
+      runJson({"sample", sphere, "--line", "0,0,15mm:0,3mm,25mm", "--count", "11", "-o", samples});
+  EXPECT_EQ(report.at("points").asInteger(), 11);
+  const CsvTable table = readCsv(samples, {"x [m]", "y [m]", "z [m]", "phi [m]"});
+  ASSERT_EQ(table.rows.size(), 11u);
+  for (std::size_t i = 0; i < 11; ++i) {
+    const Vec3 p(table.rows[i][0], table.rows[i][1], table.rows[i][2]);
+    EXPECT_NEAR((p - Vec3(0, 0.0003 * double(i), 0.015 + 0.001 * double(i))).norm(), 0, 1e-12);
+    EXPECT_NEAR(table.rows[i][3], p.norm() - 0.02, 4e-5) << i;
+  }
+  expectOneLineError(run({"sample", sphere, "-o", samples}), {"--line"});
+  expectOneLineError(run({"sample", sphere, "--line", "0,0,1", "-o", samples}), {"X,Y,Z:X,Y,Z"});
+}
+
+TEST_F(Commands, SampleReportsAPointWithoutATable) {
+  const Json report = runJson({"sample", sphere, "--at", "0,0,21mm", "--at", "0,0.5,0"});
+  const auto& points = report.at("at").asArray();
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_NEAR(points[0].at("phi").asNumber(), 0.001, 4e-5);
+  EXPECT_NEAR(points[0].at("gradient").asArray()[2].asNumber(), 1, 2e-3);
+  EXPECT_EQ(points[0].at("stiffness").asNumber(), 500);
+  EXPECT_TRUE(points[0].at("in_band").asBool());
+  EXPECT_NEAR(points[1].at("phi").asNumber(), 0.48, 4e-5);
+  EXPECT_FALSE(points[1].at("in_band").asBool());
+  expectOneLineError(run({"sample", sphere}), {"--points, --line, --at or --pins"});
+  expectOneLineError(run({"sample", sphere, "--pins", "--at", "0,0,0"}), {"--pins"});
+}
+
+TEST_F(Commands, PinsOfAWorkspaceAreSampledByName) {
+  const std::string scene = folder / "pinned";
+  ASSERT_EQ(
+      run({"scene", "-o", scene, "--add", sphere, "--set", "pins=top=0,0,21mm;far=0,0,60mm"}).exit,
+      0);
+  const std::string table = folder / "pins.csv";
+  const Json report = runJson({"sample", scene, "--pins", "-o", table});
+  const auto& pins = report.at("at").asArray();
+  EXPECT_EQ(pins.at(0).at("pin").asString(), "top");
+  // A pin beyond the band has exact values, as a point has.
+  EXPECT_FALSE(pins.at(1).at("in_band").asBool());
+  EXPECT_NEAR(pins.at(1).at("phi").asNumber(), 0.04, 4e-5);
+  EXPECT_NEAR(pins.at(1).at("closest").asArray().at(2).asNumber(), 0.02, 4e-5);
+  EXPECT_EQ(readFile(table).substr(0, 4), "pin,");
+  EXPECT_NE(readFile(table).find("\ntop,0,0,0.021,"), std::string::npos);
+}
+
+TEST_F(Commands, SampleOfAFieldFileEqualsThatOfItsMesh) {
   const std::string field = folder / "sphere.vti";
   const std::string points =
       folder.write("points.csv", "x [m],y [m],z [m]\n0.003,0.002,0.0205\n0.019,0.001,-0.004\n");
@@ -217,7 +264,7 @@ TEST_F(Commands, FeelGivesHookesForceAndItsReport) {
   EXPECT_NEAR(report.at("max_force").asNumber(), 0.8, 0.02);
 }
 
-TEST_F(Commands, FeelSaysThatAPathNeverTouches) {
+TEST_F(Commands, FeelReportsAPathWithoutContact) {
   const std::string far = folder / "far.csv";
   std::ofstream(far) << "t [s],x [m],y [m],z [m]\n0,1,1,1\n0.001,1,1,1\n";
   const std::string forces = folder / "forces.csv";
@@ -261,7 +308,7 @@ TEST_F(Commands, FeelOptionsReachTheServo) {
   EXPECT_NE(stages.find("damping"), std::string::npos) << stages;
 }
 
-TEST_F(Commands, UnitScalesTheMeshAndAnImplausibleSizeIsWarnedOf) {
+TEST_F(Commands, UnitScalesTheMeshAndAnImplausibleSizeCausesAWarning) {
   const Json mm = runJson({"info", sphere, "--no-field"});
   const Json cm = runJson({"info", sphere, "--no-field", "--unit", "cm"});
   const double z_mm = mm.at("bounds").asArray()[1].asArray()[2].asNumber();
@@ -280,7 +327,7 @@ TEST_F(Commands, UnitScalesTheMeshAndAnImplausibleSizeIsWarnedOf) {
   EXPECT_EQ(run({"info", sphere, "--no-field"}).err, "");
 }
 
-TEST_F(Commands, ModelsAreWrittenInEveryFormatAndReadBackAlike) {
+TEST_F(Commands, ModelsAreWrittenInEveryFormatAndReadBackEqual) {
   for (const std::string name : {"sphere", "torus", "box", "plate", "vase", "galleon"})
     for (const std::string extension : {".obj", ".ply", ".stl"}) {
       const std::string mesh = folder / (name + extension);
@@ -328,7 +375,7 @@ TEST_F(Commands, DevicesListsTheBuiltInOnes) {
   }
 }
 
-TEST_F(Commands, ADeviceThatASceneMayNotNameIsRefused) {
+TEST_F(Commands, SceneRefusesUnsuitableDevices) {
   for (const char* name : {"telephone", "replay"}) {
     const Outcome outcome = run(
         {"scene", "-o", folder / "felt", "--add", sphere, "--set", std::string("device=") + name});
@@ -340,7 +387,7 @@ TEST_F(Commands, ADeviceThatASceneMayNotNameIsRefused) {
   }
 }
 
-TEST_F(Commands, ExportWritesWhatParaViewOpens) {
+TEST_F(Commands, ExportWritesFilesForParaView) {
   const Json report =
       runJson({"export", sphere, "-o", folder / "out", "--path", path, "--resolution", "60"});
   for (const Json& file : report.at("files").asArray())

@@ -1,20 +1,20 @@
-// What the devices' commands do to a machine without any: rules that are written where they are
-// asked for, and a probe that is not there.
+// The commands for devices on a machine without any: rules are written to the requested file, and a
+// missing probe is an error.
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <thread>
 
+#include "acquisition/sources/sources.h"
 #include "core/file.h"
 #include "integration/program.h"
-#ifdef PATINA_HAS_ACQUISITION
-#include "acquisition/sources/sources.h"
-#endif
+#include "support/places.h"
+#include "usb/usb_bus.h"
 
 namespace patina::test {
 namespace {
 
-TEST(DevicesCommand, WritesTheRulesOfUdevWhereItIsTold) {
+TEST(DevicesCommand, WritesUdevRulesIntoTheGivenFolder) {
   const ScratchFolder folder;
   const Json report = runJson({"devices", "--install-udev", folder.path().string()});
   const std::string file = folder / "70-patina.rules";
@@ -25,8 +25,36 @@ TEST(DevicesCommand, WritesTheRulesOfUdevWhereItIsTold) {
                      {"70-patina.rules", "run this as root (sudo), or name a folder of your own"});
 }
 
-#ifdef PATINA_HAS_ACQUISITION
-TEST(SimulatedProbe, IsReadFromItsPortWithNothingLostOnTheWay) {
+TEST(DevicesCommand, HelperForRootWritesTheSameRulesAndLoadsNoLibraryOfADevice) {
+  const ScratchFolder folder;
+  const auto helper = programFolder() / "patina-udev";
+  const std::string file = folder / "70-patina.rules";
+  const Outcome outcome = Running({folder.path().string()}, helper).wait();
+  EXPECT_EQ(outcome.exit, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, file + "\n");
+  EXPECT_EQ(readFile(file), udevRules());
+  folder.write("70-patina.rules", "# of somebody\n");
+  const Outcome refused = Running({folder.path().string()}, helper).wait();
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_EQ(refused.err,
+            "patina-udev: " + file + ": holds other rules than Patina's; remove it first\n");
+  EXPECT_EQ(Running({"--help"}, helper).wait().exit, 2);
+  const Environment traced(
+      {{"LD_TRACE_LOADED_OBJECTS", std::string("1")}}); // the loader lists and ends
+  const std::string loaded = Running({}, helper).wait().out;
+  EXPECT_NE(loaded.find("libstdc++"), std::string::npos);
+  for (const char* library : {"libusb", "libcrypto", "libtbb", "libvtk", "patina"})
+    EXPECT_EQ(loaded.find(library), std::string::npos) << loaded;
+}
+
+TEST(DevicesCommand, InstallsRulesWithoutLoadingAPlugin) {
+  const ScratchFolder folder;
+  const Outcome outcome = run({"devices", "--install-udev", folder.path().string()});
+  EXPECT_EQ(outcome.exit, 0);
+  EXPECT_EQ(outcome.out.find("plugin:"), std::string::npos) << outcome.out;
+}
+
+TEST(SimulatedProbe, IsReadFromItsPortWithoutLoss) {
   const ScratchFolder folder;
   const std::string link = folder / "probe";
   Running probe({"simulate-device", "probe", "--rate", "2000", "--loss", "0.05", "--seconds", "2",
@@ -49,12 +77,11 @@ TEST(SimulatedProbe, IsReadFromItsPortWithNothingLostOnTheWay) {
   EXPECT_GE(report.at("lost").asInteger(), static_cast<std::int64_t>(health.lost_packets));
 }
 
-TEST(SimulatedProbe, ThatIsNotThereIsOneLine) {
+TEST(SimulatedProbe, CausesOneLineIfAbsent) {
   const ScratchFolder folder;
   expectOneLineError(run({"simulate-device", "telephone"}),
-                     {"it must be falcon, spacemouse or probe"});
+                     {"DEVICE = telephone: it must be probe"});
 }
-#endif
 
 } // namespace
 } // namespace patina::test

@@ -1,17 +1,17 @@
-// What every command that writes is given, on small inputs, for tests of how it fails.
+// Arguments of every writing command on small inputs, for tests of failures.
 #pragma once
 
 #include "integration/painted.h"
 
 namespace patina::test {
 
-// A recording is never written over: what a hand has done cannot be done again.
+// A recording is never overwritten: the hand's motion cannot be repeated.
 enum class Writes { file, folder, workspace, recording };
 
 struct CommandLine {
   std::string name;
   std::vector<std::string> words; // "OUT" stands for the output
-  std::string extension;          // of the output
+  std::string extension;          // extension of the output
   Writes writes = Writes::file;
 
   std::vector<std::string> to(const std::string& output) const {
@@ -53,8 +53,7 @@ class EveryCommand : public Painted {
     return all;
   }
 
-#ifdef PATINA_HAS_ACQUISITION
-  // What the commands of a scan read: made once, where a test wants them.
+  // Makes the inputs of the scan commands once, if a test needs them.
   void makeScan() const {
     const std::string scan = folder / "scan", path = folder / "path.csv";
     (void)runJson({"simulate-scan", box, "-o", folder / "film", "--seconds", "1", "--frames"});
@@ -69,9 +68,7 @@ class EveryCommand : public Painted {
             {"register", {"register", box, folder / "path.csv", "-o", "OUT"}, ".csv"},
             {"fit-texture", {"fit-texture", folder / "heights.csv", "-o", "OUT"}, ".json"},
             {"map-texture", {"map-texture", box, folder / "registered.csv", "-o", "OUT"}, ".obj"},
-            { "calibrate",
-              {"calibrate", folder / "weights.csv", "--force", "-o", "OUT"},
-              ".json" }};
+            {"calibrate", {"calibrate", folder / "weights.csv", "--force", "-o", "OUT"}, ".json"}};
   }
   std::vector<CommandLine> scanFolderCommands() const {
     const std::string film = "replay:" + (folder / "film");
@@ -79,22 +76,10 @@ class EveryCommand : public Painted {
              {"simulate-scan", box, "-o", "OUT", "--seconds", "1"},
              "",
              Writes::folder},
-            { "record",
-              {"record", film, "--probe", film, "-o", "OUT"},
-              "",
-              Writes::recording }};
+            {"record", {"record", film, "--probe", film, "-o", "OUT"}, "", Writes::recording}};
   }
-#else
-  void makeScan() const {}
-  std::vector<CommandLine> scanFileCommands() const {
-    return {};
-  }
-  std::vector<CommandLine> scanFolderCommands() const {
-    return {};
-  }
-#endif
 
-  // Names in the folder, sorted; to see what a command leaves.
+  // Returns the sorted names in the folder, to see what a command leaves.
   std::vector<std::string> names() const {
     std::vector<std::string> all;
     for (const auto& item : std::filesystem::directory_iterator(folder.path()))

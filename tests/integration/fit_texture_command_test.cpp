@@ -1,5 +1,4 @@
-// From heights to a texture that is felt, by commands.
-#ifdef PATINA_HAS_ACQUISITION
+// Commands make a touchable texture from heights.
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +7,7 @@
 #include "core/file.h"
 #include "integration/program.h"
 #include "pictures/picture_file.h"
+#include "support/profilometer_files.h"
 #include "workspace/texture_file.h"
 
 namespace patina::test {
@@ -30,7 +30,7 @@ class FittedTextures : public testing::Test {
   std::string profile, out;
 };
 
-TEST_F(FittedTextures, AreOfTheProfilesLengthAndWave) {
+TEST_F(FittedTextures, HaveTheProfilesLengthAndWave) {
   const Json report =
       runJson({"fit-texture", profile, "-o", out, "--stiffness", "2000", "--name", "waves"});
   EXPECT_NEAR(report.at("length").asNumber(), 0.05, 1e-9);
@@ -73,6 +73,66 @@ TEST_F(FittedTextures, ComeFromAPictureOfHeights) {
   expectOneLineError(run({"fit-texture", profile, "-o", out, "--rank", "2"}), {"--rank"});
 }
 
+// The same wave as an X3P profile, an SDF profile and a table of x and z.
+TEST_F(FittedTextures, ComeFromProfilesOfAProfilometer) {
+  std::vector<double> heights;
+  std::vector<std::string> inline_heights;
+  std::string table = "x [mm];z [um]\n", text;
+  for (int i = 0; i <= 500; ++i) {
+    heights.push_back(std::round(1e5 * std::cos(2 * std::numbers::pi * i / 50)));
+    inline_heights.push_back(std::to_string(heights.back()));
+    text += inline_heights.back() + "\n";
+    table += std::to_string(0.1 * i) + ";" + std::to_string(1e-3 * heights.back()) + "\n";
+  }
+  X3pFile x3p;
+  x3p.feature = "PRF";
+  x3p.x = "<AxisType>I</AxisType><Increment>1e-4</Increment>";
+  x3p.z = "<AxisType>A</AxisType><DataType>L</DataType><Increment>1e-9</Increment>";
+  x3p.size = X3pFile::matrix(501, 1);
+  x3p.setInline(inline_heights);
+  SdfFile sdf;
+  sdf.points = 501;
+  sdf.x_scale = 1e-4;
+  for (const std::string& bytes :
+       {x3p.bytes(), sdf.text(text), sdf.binary(bytesOf<double>(heights)), table}) {
+    writeFileAtomically(profile, bytes);
+    const Json report = runJson({"fit-texture", profile, "-o", out});
+    EXPECT_NEAR(report.at("length").asNumber(), 0.05, 1e-9);
+    EXPECT_NEAR(report.at("wavelength").asNumber(), 5e-3, 1e-9);
+    EXPECT_NEAR(readTexture(out).series.a[9], 1e-4, 2e-6);
+  }
+  expectOneLineError(run({"fit-texture", profile, "-o", out, "--kind", "plane"}),
+                     {"profile.csv", "is a profile"});
+  writeFileAtomically(profile, "x [mm],z\n0,1\n");
+  expectOneLineError(run({"fit-texture", profile, "-o", out}), {"profile.csv:1", "has no unit"});
+}
+
+TEST_F(FittedTextures, ComeFromAnAreaOfAProfilometer) {
+  X3pFile area;
+  area.x = area.y = "<AxisType>I</AxisType><Increment>1e-4</Increment>";
+  area.size = X3pFile::matrix(121, 101);
+  std::vector<double> heights;
+  for (int i = 0; i < 121 * 101; ++i)
+    heights.push_back(1e-5 * (i % 121) + 1e-5 * std::cos(2 * std::numbers::pi * (i % 121) / 20));
+  heights[5000] = std::nan("");
+  area.setBinary(bytesOf<double>(heights));
+  const std::string file = folder / "leather.x3p";
+  writeFileAtomically(file, area.bytes());
+  for (const char* kind : {"plane", "products"}) {
+    const Outcome done = run({"fit-texture", file, "-o", out, "--kind", kind});
+    EXPECT_EQ(done.exit, 0);
+    EXPECT_NE(done.err.find("1 of 12,221 points were not measured"), std::string::npos);
+    EXPECT_NE(done.err.find("the square of 101 in the middle is fitted"), std::string::npos);
+    EXPECT_NEAR(period(readTexture(out)), 0.01, 1e-9);
+    EXPECT_NEAR(rmsHeight(readTexture(out)), 1e-5 / std::numbers::sqrt2, 3e-7);
+  }
+  expectOneLineError(run({"fit-texture", file, "-o", out}), {"leather.x3p", "is an area"});
+  area.files["bindata/data.bin"][9] ^= 1;
+  writeFileAtomically(file, area.bytes());
+  expectOneLineError(run({"fit-texture", file, "-o", out, "--kind", "plane"}),
+                     {"leather.x3p", "checksum"});
+}
+
 TEST_F(FittedTextures, ComeFromAScansHeights) {
   const std::string plate = folder / "plate.ply", scan = folder / "scan",
                     heights = folder / "heights.csv";
@@ -86,7 +146,7 @@ TEST_F(FittedTextures, ComeFromAScansHeights) {
   EXPECT_EQ(problemOf(readTexture(out)), "");
 }
 
-TEST_F(FittedTextures, AreRefusedWithTheFileThatIsWrong) {
+TEST_F(FittedTextures, AreRefusedWithTheNameOfTheWrongFile) {
   const std::string bad = folder / "bad.csv";
   expectOneLineError(run({"fit-texture", folder / "none.csv", "-o", out}), {"none.csv"});
   writeFileAtomically(bad, "along [m],height [m]\n0,0\n1e-3,1,7\n");
@@ -103,10 +163,9 @@ TEST_F(FittedTextures, AreRefusedWithTheFileThatIsWrong) {
                      {"profile.csv", "longer step"});
   expectOneLineError(run({"fit-texture", profile, "-o", profile}), {"profile.csv"});
   expectOneLineError(run({"fit-texture", profile, "-o", out, "--kind", "cloud"}), {"cloud"});
-  expectOneLineError(run({"fit-texture", profile, "-o", out, "--stretch", "4"}), {"stretch 4"});
+  expectOneLineError(run({"fit-texture", profile, "-o", out, "--interval", "4"}), {"stretch 4"});
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 } // namespace
 } // namespace patina::test
-#endif

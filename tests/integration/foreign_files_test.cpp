@@ -1,5 +1,4 @@
-// Tables and calibrations that other programs wrote, through the commands that read them.
-#ifdef PATINA_HAS_ACQUISITION
+// Tables and calibrations from other programs, through the commands that read them.
 #include <algorithm>
 #include <sstream>
 
@@ -15,14 +14,14 @@ std::string withEach(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-// As a spreadsheet of a country with decimal commas writes it.
+// Written by a spreadsheet with decimal commas.
 std::string german(const std::string& text) {
   return "\xEF\xBB\xBF" + withEach(withEach(withEach(text, ",", ";"), ".", ","), "\n", "\r\n");
 }
 
 class ForeignTables : public Scans {};
 
-TEST_F(ForeignTables, AreFeltAndSampledAsTheirPlainTwins) {
+TEST_F(ForeignTables, GiveTheSameSamplesAsPlainTables) {
   std::string plain = "t [s],x [m],y [m],z [m]\n", scaled = "note;z [mm];t [ms];x [um];y [cm]\n";
   for (int i = 0; i < 50; ++i) {
     const int height = 60 - i; // [mm]
@@ -57,13 +56,13 @@ TEST_F(ForeignTables, AreFeltAndSampledAsTheirPlainTwins) {
   };
   const std::string sampled = samples(twin);
   for (const std::string& other : others) EXPECT_EQ(samples(other), sampled) << other;
-  // What feel writes is a path without a warning.
+  // The output of feel is a path that is read without a warning.
   ASSERT_EQ(run({"feel", ball, "--path", twin, "-o", folder / "felt.csv"}).exit, 0);
   EXPECT_EQ(run({"feel", ball, "--path", folder / "felt.csv", "-o", out}).err.find("left out"),
             std::string::npos);
 }
 
-TEST_F(ForeignTables, SayWhichSeparatorUnitOrColumnIsWrong) {
+TEST_F(ForeignTables, NameTheWrongSeparatorUnitOrColumn) {
   const std::string out = folder / "out.csv";
   const auto refused = [&](const std::string& text, const std::vector<std::string>& parts) {
     expectOneLineError(run({"feel", ball, "--path", folder.write("t.csv", text), "-o", out}),
@@ -85,7 +84,7 @@ TEST_F(ForeignTables, SayWhichSeparatorUnitOrColumnIsWrong) {
       << felt.err;
 }
 
-TEST_F(ForeignTables, AScanOfThemIsFilteredAsItsTwin) {
+TEST_F(ForeignTables, FilterToTheSamePathAsPlainTables) {
   simulate({"--seconds", "3"});
   const std::string heights = folder / "heights.csv", texture = folder / "texture.json";
   ASSERT_EQ(run({"filter", scan, "-o", path, "--heights", heights}).exit, 0);
@@ -108,7 +107,7 @@ TEST_F(ForeignTables, AScanOfThemIsFilteredAsItsTwin) {
   EXPECT_EQ(readFile(texture), fitted);
 }
 
-TEST_F(Scans, AFisheyeCameraIsTrackedByEveryProgramsCalibration) {
+TEST_F(Scans, TrackAFisheyeCameraByEveryProgramsCalibration) {
   const std::string numbers = "340, 0, 320, 0, 340, 240, 0, 0, 1", lens = "-0.05, 0.01, 0, 0";
   const std::string ros = "image_width: 640\nimage_height: 480\ncamera_matrix:\n  rows: 3\n"
                           "  cols: 3\n  data: [" +
@@ -145,4 +144,3 @@ TEST_F(Scans, AFisheyeCameraIsTrackedByEveryProgramsCalibration) {
 
 } // namespace
 } // namespace patina::test
-#endif

@@ -1,4 +1,4 @@
-// --help, --version, manual pages and the user's documents say the same.
+// --help, --version, manual pages and the user's documents are consistent.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -12,13 +12,13 @@
 namespace patina::test {
 namespace {
 
-// The documents that a person reads.
+// Documents for users.
 std::string document(const std::string& name) {
   const std::filesystem::path path = sourceFolder() / name;
   return std::filesystem::exists(path) ? readFile(path) : "";
 }
 
-// The names in the list of patina --help.
+// Returns the names in the list of patina --help.
 std::vector<std::string> commands() {
   std::istringstream help(run({"--help"}).out);
   std::vector<std::string> names;
@@ -34,7 +34,7 @@ std::vector<std::string> commands() {
   return names;
 }
 
-// The long options of one command, by its --help.
+// Returns the long options in one command's --help.
 std::vector<std::string> options(const std::string& command) {
   std::istringstream help(run({command, "--help"}).out);
   std::vector<std::string> names;
@@ -53,10 +53,7 @@ std::vector<std::string> options(const std::string& command) {
 }
 
 TEST(Help, ListsTheCommandsOfThisVersion) {
-#ifndef PATINA_HAS_ACQUISITION
-  GTEST_SKIP() << "the documents are of a whole build";
-#endif
-  // Those that the document of the command line has a chapter for, in its order.
+  // Returns the commands with a chapter in the command line's document, in its order.
   std::istringstream lines(document("docs/command_line.md"));
   std::vector<std::string> expected;
   for (std::string line; std::getline(lines, line);)
@@ -65,7 +62,7 @@ TEST(Help, ListsTheCommandsOfThisVersion) {
   EXPECT_EQ(commands(), expected);
 }
 
-TEST(Help, OfEachCommandShowsOptionsExampleAndExitCodes) {
+TEST(Help, ShowsOptionsExampleAndExitCodesOfEachCommand) {
   for (const std::string& command : commands()) {
     const Outcome help = run({command, "--help"});
     EXPECT_EQ(help.exit, 0);
@@ -118,7 +115,7 @@ TEST(Help, ShowsDefaultsAndUnits) {
     EXPECT_NE(help.find(part), std::string::npos) << part;
 }
 
-TEST(Help, OfSceneNamesEveryKeyThatASceneHas) {
+TEST(Help, NamesEveryKeyOfAScene) {
   const ScratchFolder folder;
   const std::string help = run({"scene", "--help"}).out;
   const std::string error = run({"scene", "-o", folder / "w", "--set", "no.such=1"}).err;
@@ -128,7 +125,7 @@ TEST(Help, OfSceneNamesEveryKeyThatASceneHas) {
   EXPECT_GE(keys, 13) << error;
 }
 
-TEST(Help, HelpAndManShowWhatTheOptionDoes) {
+TEST(Help, IsTheSameForHelpAndManAsForTheOption) {
   for (const std::string& command : commands())
     EXPECT_EQ(run({"help", command}).out, run({command, "--help"}).out);
   EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
@@ -138,7 +135,7 @@ TEST(Help, HelpAndManShowWhatTheOptionDoes) {
   EXPECT_NE(page.out.find("tip path"), std::string::npos);
 }
 
-// By bash itself, from the table of commands.
+// Bash itself completes the words, from the table of commands.
 TEST(Help, BashCompletesCommandsOptionsAndTheirWords) {
   const auto completed = [](const std::string& words) {
     return Running({"-c",
@@ -159,7 +156,7 @@ TEST(Help, BashCompletesCommandsOptionsAndTheirWords) {
     EXPECT_NE((" " + completed("patina feel --")).find(option), std::string::npos) << option;
 }
 
-// In a shell at a pseudo-terminal: what TAB makes of each line.
+// Presses TAB after each line in a shell at a pseudo-terminal.
 TEST(Help, ZshCompletesCommandsOptionsAndTheirWords) {
   const ScratchFolder folder;
   folder.write("_patina", run({"completion", "zsh"}).out);
@@ -194,7 +191,7 @@ zpty -d z
     EXPECT_NE(text.find("    " + command + ")\n"), std::string::npos) << command;
 }
 
-// By fish itself, which lists the candidates, each with its caption.
+// Fish itself lists the candidates, each with its caption.
 TEST(Help, FishCompletesCommandsOptionsAndTheirWords) {
   const ScratchFolder folder;
   const std::string script = folder.write("patina.fish", run({"completion", "fish"}).out);
@@ -226,9 +223,9 @@ TEST(Help, VersionIsOneLine) {
   }
 }
 
-// Of processor time. Where opening a file takes a hundred times as long as elsewhere an interpreter
-// that does nothing says what may be asked.
-TEST(Help, ComesWithinFiftyMilliseconds) {
+// The limit is processor time. If opening a file takes a hundred times as long as elsewhere, an
+// idle interpreter gives the limit.
+TEST(Help, TakesAtMostFiftyMilliseconds) {
   const auto childSeconds = [] {
     rusage usage{};
     getrusage(RUSAGE_CHILDREN, &usage);
@@ -280,10 +277,7 @@ TEST(ManualPages, ExistForTheProgramAndEveryCommandWithTheHelpsOptions) {
   EXPECT_EQ(files, pages);
 }
 
-TEST(Documents, CommandLineIsTheHelpOfThisVersion) {
-#ifndef PATINA_HAS_ACQUISITION
-  GTEST_SKIP() << "the documents are of a whole build";
-#endif
+TEST(Documents, CommandLineMatchesTheHelp) {
   const ScratchFolder folder;
   ASSERT_EQ(run({"man", "-o", folder.path().string(), "--markdown"}).exit, 0);
   const std::string made = readFile(folder / "command_line.md");
@@ -293,7 +287,7 @@ TEST(Documents, CommandLineIsTheHelpOfThisVersion) {
     EXPECT_NE(made.find("patina " + command), std::string::npos) << command;
 }
 
-TEST(Documents, FileFormatsHaveTheColumnsThatTheProgramWrites) {
+TEST(Documents, FileFormatsListTheWrittenColumns) {
   const std::string text = document("docs/file_formats.md");
   ASSERT_FALSE(text.empty());
   const ScratchFolder folder;
@@ -306,7 +300,7 @@ TEST(Documents, FileFormatsHaveTheColumnsThatTheProgramWrites) {
   ASSERT_EQ(
       run({"sample", box, "--points", points, "-o", folder / "s.csv", "--resolution", "40"}).exit,
       0);
-  // The samples' columns begin with those of the points.
+  // The samples' columns begin with the points' columns.
   const std::string given = firstLine(points);
   const std::string samples = firstLine(folder / "s.csv");
   ASSERT_TRUE(samples.starts_with(given + ","));
@@ -315,11 +309,8 @@ TEST(Documents, FileFormatsHaveTheColumnsThatTheProgramWrites) {
     EXPECT_NE(text.find("`" + columns + "`"), std::string::npos) << columns;
 }
 
-// A line such as "    patina field mesh.ply --voxel 1mm" must not promise what is not there.
-TEST(Documents, PromiseOnlyCommandsAndOptionsThatExist) {
-#ifndef PATINA_HAS_ACQUISITION
-  GTEST_SKIP() << "the documents are of a whole build";
-#endif
+// A line such as "    patina field mesh.ply --voxel 1mm" must use existing commands and options.
+TEST(Documents, NameOnlyExistingCommandsAndOptions) {
   const std::vector<std::string> known = commands();
   int seen = 0;
   for (const char* name : {"README.md", "docs/user_guide.md", "docs/tutorial.md", "docs/studies.md",

@@ -11,7 +11,7 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 
 class History : public Painted {};
 
-TEST_F(History, UndoBringsBackEverySceneBitwiseAndRedoToo) {
+TEST_F(History, UndoAndRedoRestoreEverySceneBitwise) {
   std::vector<Scene> scenes{loadWorkspace(workspace)};
   const Stroke strokes[] = {
       stroke(Tool::material(MaterialChannel::stiffness), 900, 0.006, {{0, 0, kTop}}),
@@ -48,7 +48,7 @@ TEST_F(History, UndoBringsBackEverySceneBitwiseAndRedoToo) {
   EXPECT_TRUE(same(loadWorkspace(workspace), scenes[5]));
 }
 
-TEST_F(History, NothingToUndoIsSaidAndTouchesNothing) {
+TEST_F(History, ReportsNothingToUndoAndChangesNothing) {
   const std::string before = fingerprint(workspace);
   for (const char* command : {"undo", "redo"}) {
     const Outcome outcome = run({command, workspace, "--json"});
@@ -61,7 +61,7 @@ TEST_F(History, NothingToUndoIsSaidAndTouchesNothing) {
   EXPECT_EQ(fingerprint(workspace), before);
 }
 
-TEST_F(History, MoreStepsThanThereAreTakeAll) {
+TEST_F(History, SurplusStepsUndoAll) {
   const Scene start = loadWorkspace(workspace);
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
   EXPECT_EQ(runJson({"undo", workspace, "--steps", "99"}).at("undone").asInteger(), 3);
@@ -71,7 +71,7 @@ TEST_F(History, MoreStepsThanThereAreTakeAll) {
   expectOneLineError(run({"undo", workspace, "--steps", "-1"}), {"--steps"});
 }
 
-TEST_F(History, ListNamesEveryEditAndWhatIsUndone) {
+TEST_F(History, ListNamesEveryEditAndMarksUndoneOnes) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
   ASSERT_EQ(run({"scene", "-o", workspace, "--set", "stiffness=700"}).exit, 0);
   ASSERT_EQ(run({"undo", workspace}).exit, 0);
@@ -90,8 +90,8 @@ TEST_F(History, ListNamesEveryEditAndWhatIsUndone) {
   EXPECT_EQ(fingerprint(workspace), before);
 }
 
-TEST_F(History, ListSaysWhenEachEditWasMadeWhereTheJournalKnows) {
-  const auto paintAt = [&](const char* clock) { // the clock's place, as builds have it
+TEST_F(History, ListShowsTheTimeOfEachEditIfTheJournalHasIt) {
+  const auto paintAt = [&](const char* clock) { // builds set the clock by this variable
     const Environment fixed(Settings{{"SOURCE_DATE_EPOCH", clock}});
     ASSERT_EQ(
         run({"scene", "-o", workspace, "--set", "stiffness=70" + std::string(1, *clock)}).exit, 0);
@@ -100,7 +100,7 @@ TEST_F(History, ListSaysWhenEachEditWasMadeWhereTheJournalKnows) {
   paintAt("1795597607");
   const std::int64_t before = std::time(nullptr);
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", folder / "copy"}).exit, 0);
-  const Json list = runJson({"undo", folder / "copy", "--list"}); // times go with a copy
+  const Json list = runJson({"undo", folder / "copy", "--list"}); // a copy keeps the times
   const auto& edits = list.at("edits").asArray();
   ASSERT_EQ(edits.size(), 5U);
   EXPECT_FALSE(edits[0].find("time"));
@@ -113,7 +113,7 @@ TEST_F(History, ListSaysWhenEachEditWasMadeWhereTheJournalKnows) {
   EXPECT_NE(text.find("without a time  1"), std::string::npos) << text;
 }
 
-TEST_F(History, AnEditAfterUndoDropsWhatWasUndone) {
+TEST_F(History, EditAfterUndoDropsUndoneEdits) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
   ASSERT_EQ(run({"undo", workspace, "--steps", "2"}).exit, 0);
   ASSERT_EQ(run({"scene", "-o", workspace, "--set", "stiffness=700"}).exit, 0);
@@ -123,7 +123,7 @@ TEST_F(History, AnEditAfterUndoDropsWhatWasUndone) {
 }
 
 // The history goes with a copy, and each then has its own.
-TEST_F(History, GoesWithTheOutputOfPaint) {
+TEST_F(History, IsCopiedWithTheOutputOfPaint) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", folder / "a"}).exit, 0);
   const Scene painted = loadWorkspace(folder / "a");
   const std::string more = script(
@@ -136,8 +136,8 @@ TEST_F(History, GoesWithTheOutputOfPaint) {
   EXPECT_TRUE(same(loadWorkspace(folder / "a"), painted));
 }
 
-// Version 1 knew no history: it begins with the first edit.
-TEST_F(History, AWorkspaceOfTheFirstVersionGetsOne) {
+// Version 1 had no history: it begins with the first edit.
+TEST_F(History, IsAddedToAWorkspaceOfVersion1) {
   const std::string old = folder / "old";
   std::filesystem::create_directories(old + "/meshes");
   std::filesystem::copy(box, old + "/meshes/box.ply");
@@ -159,13 +159,14 @@ TEST_F(History, AWorkspaceOfTheFirstVersionGetsOne) {
   EXPECT_TRUE(same(loadWorkspace(old), start));
 }
 
-TEST_F(History, WhatIsNoWorkspaceIsNamed) {
+TEST_F(History, NamesFoldersThatAreNoWorkspace) {
   expectOneLineError(run({"undo", box}), {"box.ply", "not a workspace"});
   expectOneLineError(run({"redo", folder / "none"}), {"none"});
 }
 
-// Damage is told in one line, leaves the folder as it is, and what is whole can be had elsewhere.
-TEST_F(History, DamagedJournalsAreNamedAndTheSceneIsRecovered) {
+// Damage is reported in one line and leaves the folder unchanged, and the intact part can be
+// recovered elsewhere.
+TEST_F(History, NamesDamagedJournalsAndTheSceneIsRecovered) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
   const Scene painted = loadWorkspace(workspace);
   const std::filesystem::path journal = openWorkspace(workspace).journal_file;
@@ -192,7 +193,7 @@ TEST_F(History, DamagedJournalsAreNamedAndTheSceneIsRecovered) {
   EXPECT_EQ(run({"paint", folder / "whole", "--strokes", three(), "-o", folder / "whole"}).exit, 0);
 }
 
-TEST_F(History, ATornLastRecordIsLeftOutWithANote) {
+TEST_F(History, LeavesOutATornLastRecordWithANote) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
   const Scene painted = loadWorkspace(workspace);
   const std::filesystem::path journal = openWorkspace(workspace).journal_file;
@@ -205,7 +206,7 @@ TEST_F(History, ATornLastRecordIsLeftOutWithANote) {
   EXPECT_TRUE(same(loadWorkspace(workspace), painted));
 }
 
-TEST_F(History, WrongHashesAndPathsThatLeaveTheFolderAreRefusedWithoutAChange) {
+TEST_F(History, RefusesWrongHashesAndOutsidePathsWithoutChanges) {
   ASSERT_EQ(run({"paint", workspace, "--strokes", three(), "-o", workspace}).exit, 0);
   const std::string manifest = workspace + "/workspace.json", whole = readFile(manifest);
   const auto tryWith = [&](const std::string& text, const std::vector<std::string>& parts) {
@@ -234,13 +235,13 @@ TEST_F(History, WrongHashesAndPathsThatLeaveTheFolderAreRefusedWithoutAChange) {
     writeFileAtomically(item.path(), bytes);
   }
   expectOneLineError(run({"info", workspace}), {"SHA-256"});
-  // The history has no need of the painted files: it is painted anew.
+  // The history does not need the painted files: they are painted again.
   const Outcome recovered = run({"scene", "-o", folder / "whole", "--recover", workspace});
   EXPECT_EQ(recovered.exit, 0) << recovered.err;
 }
 
-// A list says what was done; pictures and meshes do not matter to it, nor whether they can be read.
-TEST_F(History, AListReadsNoPicture) {
+// A list shows the edits; it does not need pictures and meshes, readable or not.
+TEST_F(History, ListReadsNoPicture) {
   const std::string strokes = script("s.json", {stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}})});
   ASSERT_EQ(run({"paint", workspace, "--strokes", strokes, "-o", workspace}).exit, 0);
   const std::string before = run({"undo", workspace, "--list"}).out;
@@ -257,7 +258,7 @@ TEST_F(History, AListReadsNoPicture) {
 // The same strokes on the same mesh: every file, byte for byte.
 TEST_F(History, TwoReplaysOfAJournalGiveTheSameFiles) {
   const Environment fixed(
-      Settings{{"SOURCE_DATE_EPOCH", "1795597607"}}); // the journal tells the time
+      Settings{{"SOURCE_DATE_EPOCH", "1795597607"}}); // the journal contains the time
   const std::string strokes = script(
       "s.json", {stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}}),
                  stroke(Tool::relief, 5e-4, 0.008, {{0, 0, kTop}, {0.01, 0, kTop}}),

@@ -1,4 +1,4 @@
-// Outputs that are no plain files, or files that somebody still needs.
+// Outputs that are no plain files, or files that another program still needs.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "integration/every_command.h"
+#include "support/places.h"
 
 namespace patina::test {
 namespace {
@@ -32,7 +33,7 @@ class HostileOutput : public EveryCommand {
     EXPECT_EQ(readFile(file), before) << line.name;
   }
 
-  // Of all in a folder, with sizes.
+  // Returns the names in a folder, with sizes.
   static std::string names(const std::string& in) {
     std::vector<std::string> all;
     for (const auto& item : fs::directory_iterator(in))
@@ -48,7 +49,7 @@ class HostileOutput : public EveryCommand {
     const std::string link = folder / ("link" + line.extension),
                       end = folder / ("end" + line.extension);
     fs::create_symlink(fs::path(end).filename(), link);
-    for (int round = 0; round < 2; ++round) { // to nothing, then to a file
+    for (int round = 0; round < 2; ++round) { // first a link to nothing, then to a file
       const Outcome outcome = run(line.to(link));
       EXPECT_LE(outcome.exit, 1) << line.name << outcome.err; // 1: it did not converge
       EXPECT_TRUE(fs::is_symlink(link)) << line.name;
@@ -91,7 +92,7 @@ TEST_F(HostileOutput, LinksAreWrittenThrough) {
   for (const CommandLine& line : fileCommands()) expectWrittenThrough(line);
 }
 
-TEST_F(HostileOutput, APipeGetsWhatAFileWould) {
+TEST_F(HostileOutput, PipeGetsTheSameBytesAsAFile) {
   for (const CommandLine& line : fileCommands()) {
     const std::string pipe = folder / ("pipe" + line.extension),
                       file = folder / ("file" + line.extension);
@@ -109,14 +110,14 @@ TEST_F(HostileOutput, APipeGetsWhatAFileWould) {
   }
 }
 
-// A terminal of its own, by a link: nothing of the system's is at stake.
-TEST_F(HostileOutput, ADeviceIsWrittenAndStaysOne) {
+// A pseudo-terminal of the test, by a link: no device of the system is at risk.
+TEST_F(HostileOutput, DeviceIsWrittenAndStaysADevice) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_GE(terminal, 0);
   ASSERT_EQ(grantpt(terminal), 0);
   ASSERT_EQ(unlockpt(terminal), 0);
   const std::string device = ptsname(terminal);
-  const int held = open(device.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC); // it does not hang up
+  const int held = open(device.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC); // keeps it open
   ASSERT_GE(held, 0);
   std::atomic<bool> over{false};
   std::atomic<std::size_t> bytes{0};
@@ -136,7 +137,7 @@ TEST_F(HostileOutput, ADeviceIsWrittenAndStaysOne) {
     EXPECT_EQ(run(line.to(link)).exit, 0) << line.name;
     EXPECT_TRUE(fs::is_symlink(link)) << line.name;
     EXPECT_TRUE(fs::is_character_file(device)) << line.name;
-    for (int time = 0; time < 500 && bytes <= 10; ++time) // the reader may not have had its turn
+    for (int time = 0; time < 500 && bytes <= 10; ++time) // the reader may need time
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_GT(bytes, 10u) << line.name;
   }
@@ -150,7 +151,7 @@ TEST_F(HostileOutput, FoldersReadOnlyAndForeignFilesAreRefused) {
   for (const CommandLine& line : fileCommands()) expectOthersRefused(line);
 }
 
-TEST_F(HostileOutput, WhereAFolderIsMeantNothingElseIsReplaced) {
+TEST_F(HostileOutput, FolderOutputReplacesNoOtherKind) {
   for (const CommandLine& line : folderCommands()) {
     const std::string file = folder.write("file.txt", "prose");
     expectUntouched(line, file, {"file.txt"});
@@ -166,7 +167,7 @@ TEST_F(HostileOutput, WhereAFolderIsMeantNothingElseIsReplaced) {
   }
 }
 
-TEST_F(HostileOutput, AnExportReplacesItsOwnFilesOnly) {
+TEST_F(HostileOutput, ExportReplacesItsOwnFilesOnly) {
   const std::string out = folder / "out";
   ASSERT_EQ(run({"export", workspace, "-o", out}).exit, 0);
   const std::string before = fingerprint(out);
@@ -182,8 +183,7 @@ TEST_F(HostileOutput, AnExportReplacesItsOwnFilesOnly) {
   EXPECT_EQ(fingerprint(out), foreign);
 }
 
-#ifdef PATINA_HAS_ACQUISITION
-TEST_F(HostileOutput, OfAScanReplacesNothingForeignEither) {
+TEST_F(HostileOutput, ScanReplacesNoForeignFiles) {
   makeScan();
   for (const CommandLine& line : scanFileCommands()) {
     expectWrittenThrough(line);
@@ -198,8 +198,71 @@ TEST_F(HostileOutput, OfAScanReplacesNothingForeignEither) {
   }
 }
 
-// A scan that was there is replaced by a scan, file by file of its kind or not at all.
-TEST_F(HostileOutput, FilesOfASimulatedScanAreReplacedByTheirLikeOnly) {
+TEST_F(HostileOutput, LinkOfAnotherUserInAStickyFolderIsRefused) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give a link away";
+  constexpr uid_t kOther = 65533;
+  const fs::path shared = folder / "shared";
+  fs::create_directory(shared);
+  ASSERT_EQ(chmod(shared.c_str(), 01777), 0);
+  const auto expectRefused = [&](const CommandLine& line, const std::string& target) {
+    const std::string link = shared / ("link" + line.extension);
+    const std::string before = fs::is_directory(target) ? names(target) : "";
+    fs::create_symlink(target, link);
+    ASSERT_EQ(lchown(link.c_str(), kOther, kOther), 0);
+    expectOneLineError(run(line.to(link)), {link, "is a link of another user"});
+    EXPECT_EQ(fs::is_directory(target) ? names(target) : "", before) << line.name;
+    fs::remove(link);
+  };
+  const std::string empty = folder / "empty";
+  fs::create_directory(empty);
+  for (const CommandLine& line : fileCommands()) {
+    expectRefused(line, folder / ("end" + line.extension));
+    EXPECT_FALSE(fs::exists(folder / ("end" + line.extension))) << line.name;
+  }
+  for (const CommandLine& line : folderCommands()) expectRefused(line, empty);
+  expectRefused({"paint", {"paint", "OUT", "--strokes", strokes, "-o", "OUT"}, ""}, workspace);
+}
+
+TEST_F(HostileOutput, PluginThatOthersCanChangeIsRefusedAlsoForAUserWhoIsNotRoot) {
+  const ScratchFolder open; // in /tmp
+  const fs::path plugin = open.path() / "patina_device_open.so";
+  fs::copy_file(programFolder() / "patina_device_example.so", plugin);
+  const Environment searched({{"PATINA_DEVICES", open.path().string()}});
+  const auto listed = [] {
+    const Json report = runJson({"devices"});
+    for (const Json& one : report.at("devices").asArray())
+      if (one.at("name").asString() == "open") return one.at("advice").asString();
+    return std::string("used");
+  };
+  if (geteuid() == 0) { // /tmp is no system folder
+    EXPECT_NE(listed().find("is not trusted: "), std::string::npos);
+  } else {
+    EXPECT_EQ(listed(), "used");
+    ASSERT_EQ(chmod(plugin.c_str(), 0757), 0);
+    EXPECT_NE(listed().find("is not trusted: others may write into "), std::string::npos);
+  }
+  if (geteuid() != 0) return;
+  constexpr uid_t kUser = 65533;
+  const auto asUser = [&] {
+    return Running({"--reuid=65533", "--regid=65533", "--clear-groups", programPath().string(),
+                    "devices"},
+                   "/usr/bin/setpriv")
+        .wait();
+  };
+  ASSERT_EQ(chmod(open.path().c_str(), 0755), 0);
+  ASSERT_EQ(chown(open.path().c_str(), kUser, kUser), 0);
+  ASSERT_EQ(chown(plugin.c_str(), kUser, kUser), 0);
+  EXPECT_NE(asUser().out.find("Example hand"), std::string::npos);
+  ASSERT_EQ(chmod(plugin.c_str(), 0757), 0);
+  const Outcome outcome = asUser();
+  EXPECT_EQ(outcome.exit, 0);
+  const std::size_t at = outcome.out.find(plugin.string() + ": is not trusted: others may write");
+  EXPECT_NE(at, std::string::npos) << outcome.out;
+}
+
+// A scan in the output folder is replaced by a scan, if each file has the expected kind, or not at
+// all.
+TEST_F(HostileOutput, SimulatedScanReplacesFilesOfTheSameKindOnly) {
   const std::string out = folder / "out";
   const CommandLine line{
       "simulate-scan", {"simulate-scan", box, "-o", "OUT", "--seconds", "1"}, ""};
@@ -234,13 +297,13 @@ TEST_F(HostileOutput, FilesOfASimulatedScanAreReplacedByTheirLikeOnly) {
           [](const std::string& path) { fs::create_symlink("/dev/null", path); });
 }
 
-TEST_F(HostileOutput, ARecordingAndADemoLeaveWhatIsThere) {
+TEST_F(HostileOutput, RecordingAndDemoKeepExistingFiles) {
   makeScan();
   const CommandLine record = scanFolderCommands()[1];
   const std::string out = folder / "out";
   fs::create_directory(out);
   for (const char* name : {"frames.csv", "poses.tum", "probe.csv", "frames"}) {
-    fs::create_symlink(folder / "nowhere", out + "/" + name); // to nothing
+    fs::create_symlink(folder / "nowhere", out + "/" + name); // a link to nothing
     expectOneLineError(run(record.to(out)), {"holds a scan already"});
     fs::remove(out + "/" + name);
   }
@@ -252,9 +315,8 @@ TEST_F(HostileOutput, ARecordingAndADemoLeaveWhatIsThere) {
                     {"report.json", "not overwritten"});
   EXPECT_FALSE(fs::exists(folder / "nowhere"));
 }
-#endif
 
-TEST_F(HostileOutput, RulesThatAreNotOursStay) {
+TEST_F(HostileOutput, KeepsForeignRules) {
   const std::string rules = folder.write("70-patina.rules", "# of somebody\n");
   expectOneLineError(run({"devices", "--install-udev", folder.path().string()}), {"other rules"});
   EXPECT_EQ(readFile(rules), "# of somebody\n");
@@ -263,7 +325,7 @@ TEST_F(HostileOutput, RulesThatAreNotOursStay) {
     EXPECT_EQ(run({"devices", "--install-udev", folder.path().string()}).exit, 0);
 }
 
-TEST_F(HostileOutput, DashIsAStream) {
+TEST_F(HostileOutput, DashMeansStandardStream) {
   const Outcome table = run({"sample", box, "--points", points, "-o", "-"});
   EXPECT_EQ(table.exit, 0);
   EXPECT_TRUE(table.out.starts_with("x [m],y [m]")) << table.out;
@@ -286,13 +348,13 @@ TEST_F(HostileOutput, DashIsAStream) {
   EXPECT_EQ(json.err, "patina: " + error.at("message").asString() + "\n");
 }
 
-TEST_F(HostileOutput, APipeWithoutAnOtherEndIsAnErrorAndNoWait) {
+TEST_F(HostileOutput, PipeWithoutAReaderIsAnErrorWithoutWaiting) {
   const std::string in = folder / "in.csv", out = folder / "out.csv";
   ASSERT_EQ(mkfifo(in.c_str(), 0600) + mkfifo(out.c_str(), 0600), 0);
   Running reader({"sample", box, "--points", in, "-o", folder / "x.csv"}, programPath()),
       writer({"sample", box, "--points", points, "-o", out}, programPath());
-  expectOneLineError(reader.wait(), {"in.csv", "nobody writes"});
-  expectOneLineError(writer.wait(), {"out.csv", "nobody reads"});
+  expectOneLineError(reader.wait(), {"in.csv", "without a writer"});
+  expectOneLineError(writer.wait(), {"out.csv", "without a reader"});
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// feel and sample over long tables: in memory that does not grow with them, all of the output or
-// nothing.
+// feel and sample over long tables: memory does not grow with them, and the output is complete or
+// absent.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class LongTables : public testing::Test {
     ASSERT_EQ(run({"model", "sphere", "-o", mesh}).exit, 0);
   }
 
-  // A tip that goes into the sphere and out again; the last row is `last`.
+  // Writes the path of a tip into the sphere and out again; the last row is `last`.
   std::string table(bool with_time, std::size_t rows, const std::string& last = "") const {
     std::string text = std::string(with_time ? "t [s]," : "") + "x [m],y [m],z [m]\n";
     for (std::size_t i = 0; i < rows; ++i) {
@@ -34,7 +34,7 @@ class LongTables : public testing::Test {
     return folder.write("in.csv", text + last);
   }
 
-  // Peak resident memory [kB] of the program by itself, and what it ended with.
+  // Peak resident memory [kB] of the program alone, and its exit code.
   static double peak(std::vector<std::string> words) {
     words.insert(words.begin(), programPath().string());
     std::vector<char*> argv;
@@ -68,7 +68,7 @@ class LongTables : public testing::Test {
   std::string mesh;
 };
 
-TEST_F(LongTables, TwiceTheRowsTakeTheSameMemory) {
+TEST_F(LongTables, TakeConstantMemoryForTwiceTheRows) {
   for (const bool feel : {true, false}) {
     const std::string input = folder / "in.csv";
     const std::vector<std::string> words = {
@@ -82,13 +82,13 @@ TEST_F(LongTables, TwiceTheRowsTakeTheSameMemory) {
     EXPECT_EQ(lines("out.csv"), 2 * kRows + 1);
     std::printf("%s: %.1f MB for %zu rows, %.1f MB for twice as many\n", words[0].c_str(),
                 once / 1024, kRows, twice / 1024);
-    // [kB]. Rows that are held are some 500 bytes each, so that it would be 150 MB; threads that an
-    // allocator serves from other arenas are a few.
+    // [kB]. Rows in memory take some 500 bytes each, which would be 150 MB; an allocator's arenas
+    // for other threads take a few.
     EXPECT_LT(twice, once + 20e3) << words[0];
   }
 }
 
-TEST_F(LongTables, ABadLastRowLeavesTheOutputAsItWas) {
+TEST_F(LongTables, KeepTheOldOutputIfTheLastRowIsBad) {
   folder.write("out.csv", "x [m],y\n1,2\n");
   for (const bool feel : {true, false}) {
     const std::string input = table(feel, 20000, feel ? "99,0,0,oops\n" : "0,0,oops\n");

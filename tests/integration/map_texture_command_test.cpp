@@ -1,5 +1,4 @@
-// Haptic coordinates along a path, by the command.
-#ifdef PATINA_HAS_ACQUISITION
+// The command that lays haptic coordinates along a path.
 #include <gtest/gtest.h>
 
 #include "core/file.h"
@@ -15,7 +14,7 @@ class MappedTextures : public testing::Test {
     mesh = folder / "plate.obj";
     path = folder / "path.csv";
     out = folder / "textured.obj";
-    // 80 mm square, in millimetres, of two triangles a 10 mm cell.
+    // A plate of 80 mm, in millimetres, with two triangles a 10 mm cell.
     std::string text;
     for (int j = 0; j <= 8; ++j)
       for (int i = 0; i <= 8; ++i)
@@ -46,18 +45,18 @@ TEST_F(MappedTextures, LieAlongThePathInTheUnitOfTheMesh) {
     EXPECT_EQ(face.texture, 3);
     for (int k = 0; k < 3; ++k) {
       const Vec3 p = read.mesh.corner(static_cast<std::size_t>(face.face), k);
-      EXPECT_NEAR(face.at[static_cast<std::size_t>(k)].x(), p.x() + 30, 1e-9);
-      EXPECT_NEAR(face.at[static_cast<std::size_t>(k)].y(), p.y() - 3, 1e-9);
+      EXPECT_NEAR(face.coords[static_cast<std::size_t>(k)].x(), p.x() + 30, 1e-9);
+      EXPECT_NEAR(face.coords[static_cast<std::size_t>(k)].y(), p.y() - 3, 1e-9);
     }
   }
   EXPECT_EQ(run({"info", out}).exit, 0); // any other command reads it as a mesh
 }
 
-TEST_F(MappedTextures, CountTheWayAsTheHeightsDo) {
+TEST_F(MappedTextures, UseTheArcLengthOfTheHeights) {
   const std::string timed = folder / "timed.csv", heights = folder / "heights.csv";
   std::string path_rows = "t [s],x [m],y [m],z [m]\n",
               height_rows = "t [s],along [m],height [m],sigma [m],stretch\n";
-  for (int i = 0; i <= 60; ++i) { // the first half of the way has no heights
+  for (int i = 0; i <= 60; ++i) { // the path's first half has no heights
     path_rows += std::to_string(0.01 * i) + "," + std::to_string(-0.03 + 1e-3 * i) + ",0.003,0\n";
     if (i >= 30)
       height_rows +=
@@ -71,14 +70,14 @@ TEST_F(MappedTextures, CountTheWayAsTheHeightsDo) {
   for (const TexturedFace& face : read.textured)
     for (int k = 0; k < 3; ++k) {
       const Vec3 p = read.mesh.corner(static_cast<std::size_t>(face.face), k);
-      EXPECT_NEAR(face.at[static_cast<std::size_t>(k)].x(), 1.1 * p.x(), 1e-6);
+      EXPECT_NEAR(face.coords[static_cast<std::size_t>(k)].x(), 1.1 * p.x(), 1e-6);
     }
   writeFileAtomically(heights, "t [s],along [m],height [m],sigma [m],stretch\n7,0,0,1,0\n");
   expectOneLineError(run({"map-texture", mesh, timed, "-o", out, "--heights", heights}),
                      {"heights.csv", "no height"});
 }
 
-TEST_F(MappedTextures, LaterOnesReplaceEarlierOnes) {
+TEST_F(MappedTextures, ReplaceEarlierOnes) {
   runJson({"map-texture", mesh, path, "-o", out, "--texture", "1", "--rings", "100"});
   const std::string both = folder / "both.obj";
   const Json report =
@@ -91,7 +90,7 @@ TEST_F(MappedTextures, LaterOnesReplaceEarlierOnes) {
   EXPECT_EQ(static_cast<std::int64_t>(second), report.at("faces").asInteger());
 }
 
-TEST_F(MappedTextures, AreRefusedWithTheFileThatIsWrong) {
+TEST_F(MappedTextures, AreRefusedWithTheNameOfTheWrongFile) {
   expectOneLineError(run({"map-texture", mesh, folder / "none.csv", "-o", out}), {"none.csv"});
   expectOneLineError(run({"map-texture", mesh, path, "-o", folder / "t.ply"}), {"t.ply", ".obj"});
   writeFileAtomically(folder / "far.csv", "x [m],y [m],z [m]\n-30,3,0\n30,3,0\n");
@@ -107,4 +106,3 @@ TEST_F(MappedTextures, AreRefusedWithTheFileThatIsWrong) {
 
 } // namespace
 } // namespace patina::test
-#endif

@@ -1,4 +1,4 @@
-// Workspaces to paint on, strokes as files, and folders as one fingerprint.
+// Workspaces to paint on, strokes as files, and fingerprints of folders.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 
 #include "core/csv.h"
 #include "core/file.h"
+#include "core/sha256.h"
 #include "integration/program.h"
 #include "scene/stroke.h"
 #include "support/same_scene.h"
-#include "core/sha256.h"
 #include "workspace/workspace.h"
 
 namespace patina::test {
@@ -64,7 +64,7 @@ class Painted : public testing::Test {
                    stroke(Tool::relief, 5e-4, 0.008, {{-0.01, 0, kTop}, {0.01, 0.005, kTop}}),
                    stroke(Tool::color, 0, 0.005, {{0.02, 0, kTop}})});
   }
-  // Pressed straight down at (x, y), `depth` deep.
+  // A path pressed straight down at (x, y), `depth` deep.
   std::string pressAt(double x, double y, double depth) const {
     std::string text = "t [s],x [m],y [m],z [m]\n";
     for (int i = 0; i <= 200; ++i)
@@ -72,8 +72,8 @@ class Painted : public testing::Test {
               std::to_string(kTop + 1e-3 - (1e-3 + depth) * i / 200) + "\n";
     return folder.write("press.csv", text);
   }
-  // The last row of `patina feel`.
-  std::vector<double> feltLast(const std::string& input, const std::string& path) const {
+  // Returns the last row of `patina feel`.
+  std::vector<double> hapticLast(const std::string& input, const std::string& path) const {
     const std::string out = folder / "felt.csv";
     const Outcome outcome = run({"feel", input, "--path", path, "-o", out});
     EXPECT_EQ(outcome.exit, 0) << outcome.err;

@@ -1,11 +1,10 @@
-// What the other commands make of a painted workspace: scene, info, emboss, export, field,
-// simulate.
+// The other commands on a painted workspace: scene, info, emboss, export, field, simulate.
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/tree/triangle_tree.h"
 #include "integration/painted.h"
 #include "pictures/picture_file.h"
-#include "session/build/session.h"
+#include "session/open/session.h"
 
 namespace patina::test {
 namespace {
@@ -44,7 +43,7 @@ TEST_F(PaintedWorkspace, InfoNamesLayersStagesReliefAndHistory) {
   EXPECT_NEAR(info.at("relief").at("highest").asNumber(), 5e-4, 1e-8);
   EXPECT_EQ(info.at("relief").find("admissible"), nullptr); // no device, nothing to judge by
   EXPECT_GT(info.at("stages").asArray().size(), plain.at("stages").asArray().size());
-  // F7: what a device bears of it.
+  // F7: the part of it that the device can render.
   ASSERT_EQ(
       run({"scene", "-o", workspace, "--set", "device.damping=0.5", "--set", "relief.mode=baked"})
           .exit,
@@ -55,7 +54,7 @@ TEST_F(PaintedWorkspace, InfoNamesLayersStagesReliefAndHistory) {
   EXPECT_TRUE(layersOf(judged).contains("relief bake"));
 }
 
-TEST_F(PaintedWorkspace, EveryCommandThatReadsWorkspacesReadsIt) {
+TEST_F(PaintedWorkspace, EveryCommandForWorkspacesReadsIt) {
   paint();
   for (const char* mode : {"pulled", "baked"}) {
     ASSERT_EQ(run({"scene", "-o", workspace, "--set", std::string("relief.mode=") + mode}).exit, 0);
@@ -66,7 +65,7 @@ TEST_F(PaintedWorkspace, EveryCommandThatReadsWorkspacesReadsIt) {
   }
 }
 
-TEST_F(PaintedWorkspace, OneCallOfSceneIsOneEdit) {
+TEST_F(PaintedWorkspace, SceneCallIsOneEdit) {
   const Scene start = loadWorkspace(workspace);
   const std::string aside = folder.write("aside.txt", "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   ASSERT_EQ(run({"scene", "-o", workspace, "--add", box + "@" + aside, "--move", "box@" + aside,
@@ -81,16 +80,16 @@ TEST_F(PaintedWorkspace, OneCallOfSceneIsOneEdit) {
   EXPECT_TRUE(same(loadWorkspace(workspace), start));
 }
 
-// A step of grey along x: felt half a millimetre higher on one side, and undone as one edit.
-TEST_F(PaintedWorkspace, APictureIsLaidAsReliefAndFelt) {
+// A step of grey along x is half a millimetre higher on one side, and is undone as one edit.
+TEST_F(PaintedWorkspace, PictureBecomesReliefAndIsRendered) {
   Picture picture{64, 64, 1, std::vector<float>(64 * 64)};
   for (std::size_t i = 0; i < picture.texel.size(); ++i) picture.texel[i] = i % 64 < 32 ? 0 : 0.5f;
-  const std::string file = folder / "step,z.png"; // its name ends like a word of the option
+  const std::string file = folder / "step,z.png"; // its name ends like an option's word
   writePicture(file, picture);
   const Scene start = loadWorkspace(workspace);
   ASSERT_EQ(run({"scene", "-o", workspace, "--image", "box=" + file + ",relief,z"}).exit, 0);
-  EXPECT_NEAR(feltLast(workspace, pressAt(0.0153, 0.0004, 1e-3))[6] / 500, 1.5e-3, 2e-5);
-  EXPECT_NEAR(feltLast(workspace, pressAt(-0.0153, 0.0004, 1e-3))[6] / 500, 1e-3, 2e-5);
+  EXPECT_NEAR(hapticLast(workspace, pressAt(0.0153, 0.0004, 1e-3))[6] / 500, 1.5e-3, 2e-5);
+  EXPECT_NEAR(hapticLast(workspace, pressAt(-0.0153, 0.0004, 1e-3))[6] / 500, 1e-3, 2e-5);
   ASSERT_EQ(run({"undo", workspace}).exit, 0);
   EXPECT_TRUE(same(loadWorkspace(workspace), start));
   ASSERT_EQ(run({"redo", workspace}).exit, 0);
@@ -113,7 +112,7 @@ TEST_F(PaintedWorkspace, BadPicturesChangeNothing) {
   EXPECT_EQ(fingerprint(workspace), before);
 }
 
-// K27: the mesh lies as high as was painted, in the unit that other commands read by default.
+// K27: the mesh has the painted heights, in the unit that other commands read by default.
 TEST_F(PaintedWorkspace, EmbossWritesTheReliefAsAMesh) {
   ASSERT_EQ(
       run({"paint", workspace, "--strokes",
@@ -139,11 +138,11 @@ TEST_F(PaintedWorkspace, EmbossWritesTheReliefAsAMesh) {
     EXPECT_LT(tree.closestPoint({0.0011, 0.0007, kTop + height}).distance, 2e-5) << name;
     EXPECT_LT(tree.closestPoint({0.0251, 0.0007, kTop}).distance, 2e-5) << name;
   }
-  EXPECT_NE(fingerprint(workspace), before); // by the set, not by emboss
+  EXPECT_NE(fingerprint(workspace), before); // the set changed it, not emboss
   expectOneLineError(run({"emboss", workspace, "-o", folder / "a.xyz"}), {"a.xyz"});
   expectOneLineError(run({"emboss", workspace, "-o", folder / "a.ply", "--unit", "fit"}),
                      {"--unit"});
-  // Without relief it is the field's own surface, and says so.
+  // The result without relief is the field's own surface, and the command reports it.
   ASSERT_EQ(run({"undo", workspace, "--steps", "2"}).exit, 0);
   const Outcome flat = run({"emboss", workspace, "-o", folder / "flat.obj"});
   EXPECT_EQ(flat.exit, 0);

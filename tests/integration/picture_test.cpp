@@ -1,4 +1,4 @@
-// Commands that draw: with a display, or with the word of advice that one is missing.
+// Commands that draw: with a display, and the advice if it is missing.
 #include <gtest/gtest.h>
 
 #include "core/file.h"
@@ -21,7 +21,7 @@ std::uint32_t bigEndian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-TEST(Pictures, SayWhatToDoWithoutADisplay) {
+TEST(Pictures, GiveAdviceWithoutADisplay) {
   const ScratchFolder folder;
   const std::string box = folder / "box.ply";
   ASSERT_EQ(run({"model", "box", "-o", box}).exit, 0);
@@ -29,7 +29,7 @@ TEST(Pictures, SayWhatToDoWithoutADisplay) {
   EXPECT_FALSE(std::filesystem::exists(folder / "p.png"));
 }
 
-TEST(Pictures, AreDrawnInTheAskedSize) {
+TEST(Pictures, AreDrawnInTheRequestedSize) {
   if (!hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
   const ScratchFolder folder;
   const std::string box = folder / "box.ply";
@@ -43,6 +43,51 @@ TEST(Pictures, AreDrawnInTheAskedSize) {
   EXPECT_EQ(png.substr(1, 3), "PNG");
   EXPECT_EQ(bigEndian(png, 16), 320u);
   EXPECT_EQ(bigEndian(png, 20), 200u);
+}
+
+TEST(Pictures, OfAWidthOnPaperHaveItsPixelsAndResolution) {
+  if (!hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
+  const ScratchFolder folder;
+  const std::string box = folder / "box.ply";
+  ASSERT_EQ(run({"model", "box", "-o", box}).exit, 0);
+  const Json report =
+      runJson({"render", box, "-o", folder / "p.png", "--width", "85mm", "--dpi", "300",
+               "--background", "transparent", "--without", "cube,legend", "--show", "mesh,slice",
+               "--slice", "0,1,1:5mm", "--resolution", "50"});
+  EXPECT_EQ(report.at("width").asNumber(), 1004);
+  EXPECT_EQ(report.at("dpi").asNumber(), 300);
+  const std::string png = readFile(folder / "p.png");
+  EXPECT_EQ(bigEndian(png, 16), 1004u);
+  EXPECT_EQ(png[25], 6) << "red, green, blue, alpha";
+  ASSERT_NE(png.find("pHYs"), png.npos);
+  EXPECT_EQ(bigEndian(png, png.find("pHYs") + 4), 11811u) << "pixels per metre";
+  ASSERT_EQ(run({"render", box, "-o", folder / "p.tif", "--scale", "2", "--size", "64x48"}).exit,
+            0);
+  EXPECT_EQ(readFile(folder / "p.tif").substr(0, 4), std::string("II*\0", 4));
+  for (const char* name : {"p.svg", "p.pdf"}) // the second time over a file of its own kind
+    for (int i = 0; i < 2; ++i) {
+      const Outcome drawn = run({"render", box, "-o", folder / name, "--size", "64x48"});
+      EXPECT_EQ(drawn.exit, 0) << drawn.err;
+    }
+  EXPECT_EQ(readFile(folder / "p.pdf").substr(0, 4), "%PDF");
+}
+
+TEST(Pictures, NameTheChoicesForWhatIsNone) {
+  const ScratchFolder folder;
+  const std::string box = folder / "box.ply", out = folder / "p.png";
+  ASSERT_EQ(run({"model", "box", "-o", box}).exit, 0);
+  const auto refused = [&](std::vector<std::string> words, const std::string& cause) {
+    std::vector<std::string> all = {"render", box, "-o", out};
+    all.insert(all.end(), words.begin(), words.end());
+    expectOneLineError(run(all), {cause});
+  };
+  refused({"--background", "pink"}, "transparent");
+  refused({"--without", "mesh"}, "legend");
+  refused({"--width", "9000mm"}, "16384");
+  refused({"--width", "12.5"}, "85mm");
+  refused({"--slice", "w"}, "0,1,1");
+  refused({"--slice", "x:1mm"}, "--show");
+  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// data/scenes: what ships is what the commands in its README make.
+// data/scenes: the shipped scenes equal the results of the commands in their README.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -30,7 +30,7 @@ std::vector<std::string> wordsOf(const std::string& line) {
   return words;
 }
 
-TEST(Presets, AreThoseOfThePapersSizes) {
+TEST(Presets, HaveThePapersSizes) {
   EXPECT_EQ(presets(), (std::vector<std::string>{"dinosaur", "galleon", "pottery"}));
   EXPECT_EQ(loadWorkspace(kScenes / "galleon").objects.at(0).mesh->triangles.size(), 8794u); // K25
   EXPECT_EQ(loadWorkspace(kScenes / "pottery").objects.at(0).mesh->triangles.size(), 4800u);
@@ -86,9 +86,9 @@ TEST(Presets, HaveStages) {
   }
 }
 
-// Every preset is pressed at faces spread over it, a sheet also from behind: where the way to a
-// face is free, the tip must meet something.
-TEST(Presets, CanBeFelt) {
+// Every preset is pressed at faces spread over it, a sheet also from behind: if the path to a face
+// is free, the tip must meet a surface.
+TEST(Presets, CanBeTouched) {
   const ScratchFolder folder;
   for (const std::string& name : presets()) {
     const TriangleMesh mesh = *loadWorkspace(kScenes / name).objects.at(0).mesh;

@@ -15,6 +15,7 @@
 #include "core/file.h"
 #include "support/fresh_folder.h"
 #include "support/places.h"
+#include "support/resident.h"
 
 extern char** environ;
 
@@ -25,7 +26,7 @@ namespace {
 std::filesystem::path freshName(const std::string& what) {
   static std::atomic<int> counter{0};
   std::filesystem::path path;
-  do { // a killed test may have left one
+  do { // a killed test may have left a folder
     path = std::filesystem::temp_directory_path() /
            ("patina-test-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + what);
   } while (std::filesystem::exists(path));
@@ -92,6 +93,10 @@ bool Running::hasThread(const std::string& name) const {
        std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/task", ended))
     if (firstLine(task.path() / "comm") == name) return true;
   return false;
+}
+
+std::size_t Running::residentBytes() const {
+  return patina::test::residentBytes(std::to_string(pid_));
 }
 
 bool Running::finished() {

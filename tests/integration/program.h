@@ -1,4 +1,4 @@
-// The real program, run as a stranger runs it: words in, exit code and two streams out. No shell.
+// The real program, run from outside: words in, exit code and two streams out. No shell.
 #pragma once
 
 #include <cstdlib>
@@ -28,9 +28,10 @@ class Running {
   Running& operator=(const Running&) = delete;
 
   void signal(int number) const;
-  bool catches(int number) const; // by a handler of its own
+  bool catches(int number) const; // it has a handler of its own
   bool hasThread(const std::string& name) const;
-  bool finished();                // without waiting
+  bool finished(); // without waiting
+  std::size_t residentBytes() const;
   Outcome wait();
 
  private:
@@ -61,7 +62,7 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-// Variables that programs started in its lifetime see.
+// Sets variables for the programs that are started in its lifetime.
 class Environment {
  public:
   explicit Environment(std::vector<std::pair<std::string, std::string>> settings)

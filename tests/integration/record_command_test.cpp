@@ -1,5 +1,4 @@
-// From frames and a probe that run to a scan folder that the next commands read.
-#ifdef PATINA_HAS_ACQUISITION
+// Records frames and a probe into a scan folder that the next commands read.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -39,7 +38,7 @@ TEST_F(RecordedScans, AreReadByTrackAndFilter) {
   EXPECT_GT(report.at("samples").asInteger(), 900);
   EXPECT_GT(report.at("frames_with_pose").asInteger() + report.at("skipped").asInteger(), 40);
   EXPECT_NEAR(report.at("seconds").asNumber(), static_cast<double>(frames) / 30, 1);
-  // What was tracked while it ran, then all frames.
+  // The first path uses the frames that were tracked live, the second all frames.
   const std::string path = folder / "path.csv";
   EXPECT_EQ(run({"filter", made, "-o", path}).exit, 0);
   const Json tracked = runJson({"track", made, "-o", made + "/poses.tum"});
@@ -48,14 +47,34 @@ TEST_F(RecordedScans, AreReadByTrackAndFilter) {
   EXPECT_EQ(run({"filter", made, "-o", path}).exit, 0);
 }
 
-TEST_F(RecordedScans, OfAProbeThatSendsNothingEndWithOneAndSaySo) {
+TEST_F(RecordedScans, HoldFramesOnlyWithoutACameraFileAndAreTrackedAfterwards) {
+  simulate({"--seconds", "1", "--frames"});
+  const std::string camera = folder / "camera.yml", rig = folder / "rig.json";
+  std::filesystem::rename(scan + "/camera.yml", camera);
+  std::filesystem::rename(scan + "/rig.json", rig);
+  const Outcome outcome = run({"record", source, "--probe", source, "-o", made, "--json"});
+  EXPECT_EQ(outcome.exit, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no camera.yml was given"), std::string::npos) << outcome.err;
+  const Json report = parseJson(outcome.out, "report");
+  const std::int64_t frames = report.at("frames").asInteger();
+  EXPECT_GT(frames, 30);
+  EXPECT_EQ(report.at("skipped").asInteger(), 0);
+  EXPECT_FALSE(report.find("frames_with_pose"));
+  EXPECT_FALSE(std::filesystem::exists(made + "/poses.tum"));
+  const Json tracked =
+      runJson({"track", made, "--camera", camera, "--rig", rig, "-o", made + "/poses.tum"});
+  EXPECT_EQ(tracked.at("frames").asInteger(), frames);
+  EXPECT_GT(tracked.at("frames_with_pose").asInteger(), 20);
+}
+
+TEST_F(RecordedScans, EndWithExit1AndAReportIfTheProbeSendsNothing) {
   simulate({"--seconds", "1", "--frames"});
   const Outcome outcome = run({"record", source, "--probe", "stream:/dev/null", "-o", made});
   EXPECT_EQ(outcome.exit, 1);
   EXPECT_NE(outcome.err.find("the probe sent nothing"), std::string::npos) << outcome.err;
 }
 
-TEST_F(RecordedScans, EndWellWithCtrlCAndAfterTheirSeconds) {
+TEST_F(RecordedScans, EndNormallyWithCtrlCAndAfterTheirSeconds) {
   simulate({"--seconds", "2", "--frames"});
   Running record({"record", source, "--json", "-o", made}, programPath());
   for (int i = 0; i < 400 && !std::filesystem::exists(made + "/frames/000005.pgm"); ++i)
@@ -71,12 +90,12 @@ TEST_F(RecordedScans, EndWellWithCtrlCAndAfterTheirSeconds) {
   EXPECT_NEAR(report.at("seconds").asNumber(), 0.5, 0.3);
 }
 
-TEST_F(RecordedScans, RefuseWhatTheyCannotRead) {
+TEST_F(RecordedScans, RefuseUnreadableInputs) {
   simulate({"--seconds", "1", "--frames"});
   expectOneLineError(run({"record", "camera:97", "--camera", scan + "/camera.yml", "--rig",
                           scan + "/rig.json", "-o", made}),
                      {"camera:97", "/dev/video97"});
-  expectOneLineError(run({"record", "camera:97", "-o", made}), {"--camera", "camera.yml"});
+  expectOneLineError(run({"record", "camera:97", "-o", made}), {"camera:97", "/dev/video97"});
   expectOneLineError(run({"record", source, "-o", scan}), {"holds a scan already"});
   expectOneLineError(run({"record", source, "--probe", scan + "/probe.csv", "-o", made}),
                      {"share no clock"});
@@ -97,18 +116,18 @@ TEST_F(RecordedScans, HaveForcesOfKnownWeights) {
   const Json written = parseJson(readFile(rig), rig);
   EXPECT_NEAR(written.at("force_zero").asNumber(), 0.2, 1e-9);
   EXPECT_LT(written.at("force_gain_deviation").asNumber(), 1e-9);
-  EXPECT_TRUE(written.find("accelerometers")); // what else was in it
+  EXPECT_TRUE(written.find("accelerometers")); // its other values
   // The filter's forces follow.
   const std::string poses = scan + "/poses.tum", path = folder / "path.csv";
   const Json all = runJson(
-      {"filter", poses, "--probe", scan + "/probe.csv", "--rig", rig, "--lifted", "-o", path});
+      {"filter", poses, "--probe", scan + "/probe.csv", "--rig", rig, "--keep-air", "-o", path});
   EXPECT_GT(all.at("samples").asInteger(), 1000);
   const std::string bad = folder.write("bad.csv", "force [N],reading\n0,1\n1,2\n");
   expectOneLineError(run({"calibrate", bad, "--force", "-o", folder / "none.json"}),
                      {"bad.csv", "zero and gain"});
 }
 
-TEST_F(RecordedScans, GetPathAndHeightsByDifferentNamesOnly) {
+TEST_F(RecordedScans, NeedDifferentNamesForPathAndHeights) {
   simulate({"--seconds", "1"});
   std::filesystem::create_directory_symlink(folder.path(), folder / "link");
   expectOneLineError(
@@ -118,4 +137,3 @@ TEST_F(RecordedScans, GetPathAndHeightsByDifferentNamesOnly) {
 
 } // namespace
 } // namespace patina::test
-#endif

@@ -1,11 +1,11 @@
-// Scans that are damaged, or none, or another one's: a line that says so, and nothing is written.
-#ifdef PATINA_HAS_ACQUISITION
+// Scans that are damaged, empty or mixed with another one cause one line of error, and nothing is
+// written.
 #include "integration/scans.h"
 
 namespace patina::test {
 namespace {
 
-TEST_F(Scans, ThatAreDamagedAreRefusedWithFileAndLine) {
+TEST_F(Scans, AreRefusedWithFileAndLineIfDamaged) {
   simulate();
   const std::string poses = readFile(scan + "/poses.tum"), probe = readFile(scan + "/probe.csv");
   const std::string head = probe.substr(0, probe.find('\n') + 1);
@@ -35,7 +35,7 @@ TEST_F(Scans, ThatAreDamagedAreRefusedWithFileAndLine) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST_F(Scans, WhatNothingMeasuresIsAnErrorOfItsLine) {
+TEST_F(Scans, NameTheLineOfAValueThatNothingMeasures) {
   const std::string out = folder / "out.csv";
   const std::string head = "t [s],x [m],y [m],z [m],qx,qy,qz,qw,sigma [m],force [N]\n",
                     good = "0,0,0,.05,0,0,0,1,1e-4,1\n";
@@ -54,22 +54,22 @@ TEST_F(Scans, WhatNothingMeasuresIsAnErrorOfItsLine) {
   }
 }
 
-TEST_F(Scans, AreMixedWithNoOther) {
+TEST_F(Scans, AreNotMixedWithAnotherScan) {
   const auto again = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"simulate-scan", ball, "-o", scan, "--seconds", "1"});
     return run(more);
   };
   simulate();
-  EXPECT_EQ(again({"--seed", "3"}).exit, 0) << "one of the same files takes its place";
+  EXPECT_EQ(again({"--seed", "3"}).exit, 0) << "another scan of the same files replaces it";
   const std::string kept = readFile(scan + "/rig.json");
   expectOneLineError(again({"--frames"}), {scan, "holds a scan already: name another folder"});
-  std::filesystem::remove(scan + "/truth.json"); // as one that was recorded
+  std::filesystem::remove(scan + "/truth.json"); // like a recorded scan
   expectOneLineError(again({}), {scan, "holds a scan already"});
   EXPECT_EQ(readFile(scan + "/rig.json"), kept);
   expectOneLineError(run({"simulate-scan", ball, "-o", "-"}), {"a scan is a folder"});
 }
 
-TEST_F(Scans, OfNothingToScanAreRefused) {
+TEST_F(Scans, AreRefusedWithoutASurface) {
   const std::string plate = folder.write("wall.obj", "v 0 0 0\nv 100 0 0\nv 0 0.1 100\nf 1 2 3\n");
   expectOneLineError(run({"simulate-scan", plate, "-o", scan}), {"--from"});
   EXPECT_FALSE(std::filesystem::exists(scan));
@@ -78,4 +78,3 @@ TEST_F(Scans, OfNothingToScanAreRefused) {
 
 } // namespace
 } // namespace patina::test
-#endif

@@ -1,22 +1,21 @@
-// How often a registration warns of a place that is right, and how often it does not of one that is
-// wrong: scans of eight seconds, which leave little to tell places apart by.
-#ifdef PATINA_HAS_ACQUISITION
+// How often a registration warns of a correct pose, and how often it does not warn of a wrong one:
+// scans of eight seconds, which hardly distinguish poses.
 #include <cstdio>
 
 #include <gtest/gtest.h>
 
-#include "app/studies/acquisition/registration_trust.h"
+#include "app/studies/acquisition/registration_consistency.h"
 #include "support/longer.h"
 
 namespace patina {
 namespace {
 
-constexpr double kRightPlace = 5e-3; // of the points, rms: no other place is as near [m]
+constexpr double kRightPlace = 5e-3; // rms distance of the points; no other pose is as near [m]
 
 struct Rates {
   int right = 0, warned = 0, wrong = 0, silent = 0;
 
-  void add(const TrustTrial& trial) {
+  void add(const ConsistencyTrial& trial) {
     const bool is_right = trial.error < kRightPlace;
     (is_right ? right : wrong) += 1;
     if (is_right) warned += trial.warned;
@@ -34,8 +33,9 @@ Rates ratesOf(const TrustBody& body, const std::vector<unsigned>& seeds) {
   return rates;
 }
 
-// The first of a dinosaur from above, two of which lie elsewhere; and of a sheet, whose bumps tell.
-TEST(RegistrationRates, WrongPlacesAreWarnedOfAndWhatTellsIsNot) {
+// The first scans of a dinosaur from above, two of which are placed wrongly, and scans of a sheet
+// whose bumps determine the pose.
+TEST(RegistrationRates, WarnOfWrongPosesAndNotOfUniqueOnes) {
   const std::vector<TrustBody> bodies = trustBodies(4);
   const bool all = test::longer(1) > 1;
   std::vector<unsigned> seeds;
@@ -55,4 +55,3 @@ TEST(RegistrationRates, WrongPlacesAreWarnedOfAndWhatTellsIsNot) {
 
 } // namespace
 } // namespace patina
-#endif

@@ -1,4 +1,4 @@
-// One report a command: what --json holds is what --help lists and what people read.
+// One report a command: --json contains the values that --help lists and that are printed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ class Reports : public testing::Test {
   std::string box, scene, tips;
 };
 
-TEST_F(Reports, HaveNoKeyThatTheHelpOfTheirCommandLacks) {
+TEST_F(Reports, HaveOnlyKeysOfTheirCommandsHelp) {
   std::vector<std::vector<std::string>> calls = {
       {"model", "box", "-o", folder / "b.ply"},
       {"scene", "-o", scene},
@@ -64,15 +64,13 @@ TEST_F(Reports, HaveNoKeyThatTheHelpOfTheirCommandLacks) {
       {"export", scene, "-o", folder / "out", "--stability"},
       {"devices"},
       {"latency-test", "--seconds", "0.1"},
-      {"latency-test", "--wire", "--seconds", "0.3", "--faults", "20"}};
-#ifdef PATINA_HAS_ACQUISITION
+      {"latency-test", "--emulated-falcon", "--seconds", "0.3", "--faults", "20"}};
   const std::string scan = folder / "scan";
   calls.push_back({"simulate-scan", box, "-o", scan, "--dropouts", "2"});
   calls.push_back({"filter", scan, "-o", folder / "path.csv"});
   const std::string seen = folder / "seen";
   calls.push_back({"simulate-scan", box, "-o", seen, "--frames", "--seconds", "1"});
   calls.push_back({"track", seen, "-o", folder / "poses.tum"});
-#endif
   for (const std::vector<std::string>& call : calls) {
     const Json report = runJson(call);
     const std::set<std::string> known = keysInHelp(call.front());
@@ -90,7 +88,7 @@ TEST_F(Reports, NameTheProgramThatMadeThem) {
   }
 }
 
-// The paths of a report's inputs, each of whose hashes is asked to be that of the file.
+// Returns the paths of a report's inputs, after comparing each hash with the file's.
 std::vector<std::string> pathsOf(const Json& report) {
   std::vector<std::string> paths;
   for (const Json& input : report.at("inputs").asArray()) {
@@ -101,7 +99,7 @@ std::vector<std::string> pathsOf(const Json& report) {
   return paths;
 }
 
-TEST_F(Reports, HoldTheHashesOfTheFilesThatWereRead) {
+TEST_F(Reports, ContainTheHashesOfTheReadFiles) {
   using Paths = std::vector<std::string>;
   EXPECT_EQ(pathsOf(runJson({"info", box, "--no-field"})), Paths{box});
   EXPECT_EQ(pathsOf(runJson({"feel", box, "-o", folder / "f.csv", "--path", tips})),
@@ -114,7 +112,7 @@ TEST_F(Reports, HoldTheHashesOfTheFilesThatWereRead) {
             (Paths{scene + "/workspace.json", scene + "/journal-1.jsonl"}));
 }
 
-TEST_F(Reports, HoldTheHashesOfAWorkspaceAsItWasBeforeItsEdit) {
+TEST_F(Reports, ContainTheHashesOfAWorkspaceBeforeItsEdit) {
   const std::string before = sha256OfFile(scene + "/workspace.json");
   const Json report = runJson({"scene", "-o", scene, "--set", "stiffness=700"});
   const Json& first = report.at("inputs").asArray().at(0);
@@ -123,7 +121,7 @@ TEST_F(Reports, HoldTheHashesOfAWorkspaceAsItWasBeforeItsEdit) {
   EXPECT_NE(sha256OfFile(scene + "/workspace.json"), before);
 }
 
-TEST_F(Reports, SayThatWhatIsNoFileHasNoHash) {
+TEST_F(Reports, MarkInputsThatAreNoFilesAsWithoutHash) {
   const std::string fifo = folder / "fifo";
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   Running reader({"sample", box, "--points", fifo, "-o", folder / "s.csv", "--json"},
@@ -136,8 +134,7 @@ TEST_F(Reports, SayThatWhatIsNoFileHasNoHash) {
   EXPECT_TRUE(inputs.asArray().at(1).at("sha256").isNull());
 }
 
-#ifdef PATINA_HAS_ACQUISITION
-TEST_F(Reports, OfAScanFolderHoldEachFileAndADigestOfItsFrames) {
+TEST_F(Reports, ContainEachFileOfAScanFolderAndADigestOfItsFrames) {
   const std::string seen = folder / "seen";
   ASSERT_EQ(run({"simulate-scan", box, "-o", seen, "--frames", "--seconds", "1"}).exit, 0);
   const Json tracked = runJson({"track", "replay:" + seen, "-o", folder / "poses.tum"});
@@ -153,9 +150,8 @@ TEST_F(Reports, OfAScanFolderHoldEachFileAndADigestOfItsFrames) {
   EXPECT_EQ(names, (std::vector<std::string>{"frames.csv", "probe.csv", "truth.json", "camera.yml",
                                              "rig.json", "frames"}));
 }
-#endif
 
-TEST_F(Reports, OfInfoSumsUpWhatIsHeld) {
+TEST_F(Reports, SumUpTheMemoryInInfo) {
   const std::string two = folder / "two";
   ASSERT_EQ(run({"scene", "-o", two, "--add", box, "--add", box, "--set", "resolution=40"}).exit,
             0);
@@ -173,8 +169,8 @@ TEST_F(Reports, OfInfoSumsUpWhatIsHeld) {
   EXPECT_EQ(runJson({"info", box, "--no-field"}).find("bytes"), nullptr);
 }
 
-// What feel takes is sampled at the same places as the points themselves.
-TEST_F(Reports, OfSampleAreTheSameForAPathAsForItsPoints) {
+// The path given to feel is sampled at the same positions as the points themselves.
+TEST_F(Reports, AreTheSameForAPathAndItsPointsInSample) {
   const std::string points = folder.write("points.csv", "x [m],y [m],z [m]\n0,0,0.03\n0,0,0.019\n");
   const std::string of_path = folder / "path.csv", of_points = folder / "samples.csv";
   const Json path = runJson({"sample", scene, "--points", tips, "-o", of_path});
@@ -184,7 +180,7 @@ TEST_F(Reports, OfSampleAreTheSameForAPathAsForItsPoints) {
   EXPECT_EQ(readCsv(of_path, columns).rows, readCsv(of_points, columns).rows);
 }
 
-TEST_F(Reports, OfSampleNameTheHeadersThatPointsMayHave) {
+TEST_F(Reports, NameTheAllowedHeadersOfPointsInSample) {
   const std::string out = folder / "o.csv";
   const auto refused = [&](const char* text, const char* reason) {
     expectOneLineError(run({"sample", scene, "--points", folder.write("bad.csv", text), "-o", out}),

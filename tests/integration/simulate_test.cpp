@@ -15,7 +15,7 @@ double number(const Json& report, const char* key) {
   return report.at(key).asNumber();
 }
 
-TEST(Simulate, ReportsEveryKeyOfTheContract) {
+TEST(Simulate, ReportsEveryDocumentedKey) {
   const Json report = runJson({"simulate", "--plane", "--stiffness", "900"});
   for (const char* key : {"stable", "rms_velocity", "max_depth", "max_force", "energy_absorbed",
                           "energy_credited", "predicted_limit", "rule_of_thumb",
@@ -23,7 +23,7 @@ TEST(Simulate, ReportsEveryKeyOfTheContract) {
     EXPECT_NE(report.find(key), nullptr) << key;
 }
 
-// T-SAFE through the command.
+// T-SAFE by the command.
 TEST(Simulate, RestsAtAnyStiffnessByDefault) {
   for (const char* stiffness : {"900", "1e5", "1e7"})
     for (const char* delay : {"0", "2"}) {
@@ -36,7 +36,7 @@ TEST(Simulate, RestsAtAnyStiffnessByDefault) {
     }
 }
 
-TEST(Simulate, AVerdictIsAResultAndTheNaiveLimiterIsWorse) {
+TEST(Simulate, ReportsAVerdictAndNaiveLimiterIsWorse) {
   const std::vector<std::string> words = {"simulate", "--plane",     "--stiffness",   "3000",
                                           "--press",  "1",           "--start-speed", "0.2",
                                           "--json",   "--stabiliser"};
@@ -56,9 +56,9 @@ TEST(Simulate, AVerdictIsAResultAndTheNaiveLimiterIsWorse) {
   EXPECT_LT(number(passive, "rms_velocity"), 5e-3);
 }
 
-// K* is 1000.83 N/m without a delay. What is thrown far is calmer now and then by chance: `stable`
-// may hold, the verdict must not.
-TEST(Simulate, OnlyALoopThatItsEigenvaluesSettleIsCalledCalming) {
+// K* is 1000.83 N/m without a delay. A far thrown tip is calmer now and then by chance: `stable`
+// may be true, but the verdict must not be.
+TEST(Simulate, CallsOnlyLoopsWithStableEigenvaluesCalming) {
   struct Case {
     const char *stiffness, *delay;
     std::vector<std::string> verdicts;
@@ -83,7 +83,7 @@ TEST(Simulate, OnlyALoopThatItsEigenvaluesSettleIsCalledCalming) {
     }
 }
 
-TEST(Simulate, ATipThatBouncesOffAndIsNotPressedHasLeftTheSurface) {
+TEST(Simulate, ReportsThatAnUnpressedTipLeftTheSurface) {
   const Json hit = runJson({"simulate", "--plane", "--stiffness", "400", "--start-speed", "0.2",
                             "--start-gap", "1mm", "--stabiliser", "none"});
   EXPECT_EQ(hit.at("verdict").asString(), "left the surface");
@@ -94,14 +94,14 @@ TEST(Simulate, ATipThatBouncesOffAndIsNotPressedHasLeftTheSurface) {
   EXPECT_EQ(waiting.at("verdict").asString(), "at rest");
 }
 
-// A passive surface may give back what it stored at the start, and no more.
-TEST(Simulate, ADeepStartIsNoGainOfEnergy) {
+// A passive surface may return its stored energy of the start, and no more.
+TEST(Simulate, DeepStartIsNoEnergyGain) {
   const Json report = runJson({"simulate", "--plane", "--stiffness", "300", "--start-depth", "20mm",
                                "--press", "1", "--stabiliser", "none", "--seconds", "10"});
   EXPECT_EQ(report.at("verdict").asString(), "calming down");
 }
 
-TEST(Simulate, RestitutionIsThatOfABounceOrNull) {
+TEST(Simulate, RestitutionIsForABounceOrNull) {
   const auto restitution = [](const char* stiffness, const char* delay, const char* speed) {
     return runJson({"simulate", "--plane", "--stiffness", stiffness, "--delay", delay, "--press",
                     "1", "--start-speed", speed, "--stabiliser", "none"})
@@ -109,11 +109,11 @@ TEST(Simulate, RestitutionIsThatOfABounceOrNull) {
   };
   EXPECT_TRUE(restitution("1010", "0", "0").isNull());   // -0.43: pressed back before it counts
   EXPECT_TRUE(restitution("1e4", "2", "0").isNull());    // 14.5
-  EXPECT_TRUE(restitution("1e6", "2", "0.2").isNull());  // thrown for good
+  EXPECT_TRUE(restitution("1e6", "2", "0.2").isNull());  // it never returns
   EXPECT_FALSE(restitution("300", "0", "0.2").isNull()); // 0.58
 }
 
-TEST(Simulate, SaysThatATipLeftAndAdvisesOnlyWhatIsNew) {
+TEST(Simulate, ReportsThatATipLeftAndAdvisesOnlyNewOptions) {
   const ScratchFolder folder;
   const std::string mesh = folder / "dinosaur.ply";
   runJson({"model", "dinosaur", "-o", mesh});
@@ -128,7 +128,7 @@ TEST(Simulate, SaysThatATipLeftAndAdvisesOnlyWhatIsNew) {
   EXPECT_EQ(held.err.find("--hand-stiffness"), std::string::npos) << held.err;
 }
 
-TEST(Simulate, SaysWhatWouldHoldATipThatIsNotPressed) {
+TEST(Simulate, NamesARemedyForAnUnpressedTip) {
   const ScratchFolder folder;
   const std::string mesh = folder / "sphere.ply";
   runJson({"model", "sphere", "-o", mesh});
@@ -166,14 +166,14 @@ TEST(Simulate, RunsOnAModel) {
   runJson({"model", "sphere", "-o", mesh});
   const Json report = runJson({"simulate", mesh, "--stiffness", "1e5", "--resolution", "60"});
   EXPECT_TRUE(report.at("stable").asBool());
-  EXPECT_LT(number(report, "rms_velocity"), 1e-6); // without friction the top is no place of rest
+  EXPECT_LT(number(report, "rms_velocity"), 1e-6); // the top without friction is no place of rest
   const double coupling = number(report, "coupling_stiffness");
   EXPECT_NEAR(number(report, "stiffness_displayed"), 1e5 * coupling / (1e5 + coupling),
               0.01 * coupling);
   EXPECT_EQ(report.at("stages").asArray().at(1).asString(), "coupling");
 }
 
-TEST(Simulate, RunsOnASheetFeltFromBothSides) {
+TEST(Simulate, RunsOnASheetTouchedFromBothSides) {
   const ScratchFolder folder;
   const std::string mesh = folder / "sheet.ply";
   writeMesh(mesh, sheet(0.1, 0.1, 10));
@@ -186,8 +186,8 @@ TEST(Simulate, RunsOnASheetFeltFromBothSides) {
               0);
     const Json report = runJson({"simulate", scene});
     EXPECT_TRUE(report.at("stable").asBool()) << radius;
-    // Pressed by 1 N it is held, by the spring and the coupling in series; a press that begins at
-    // once takes it down to twice that at most.
+    // A press of 1 N holds it, by the spring and the coupling in series; a sudden press moves it
+    // down by twice that at most.
     const double rest = 1 / number(report, "stiffness_displayed");
     EXPECT_GT(number(report, "max_depth"), rest - 2e-4) << radius;
     EXPECT_LT(number(report, "max_depth"), 2 * rest) << radius;

@@ -25,17 +25,17 @@ class SmallLimits : public EveryCommand {
     if (outcome.exit <= 1) return; // 1: it did not converge
     const std::string what = line.name + " under ulimit " + limit + ": " + outcome.err;
     EXPECT_EQ(outcome.exit, 2) << what;
-    // Where not even the program's libraries fit, the system's loader says so itself.
+    // The system's loader reports the error if not even the program's libraries fit.
     const bool loaded =
         outcome.err.find("error while loading shared libraries") == std::string::npos;
     if (loaded) {
       EXPECT_TRUE(outcome.err.find("patina: ") != std::string::npos) << what;
     }
-    if (line.name == "record") std::filesystem::remove_all(out); // what was recorded until then
+    if (line.name == "record") std::filesystem::remove_all(out); // partial recording
     EXPECT_EQ(names(), before) << what;
   }
 
-  // Each command under each limit, in the short form under two of them, ever other ones.
+  // Each command runs under each limit, in the short form under two of them, in alternation.
   void expectOfAll(const std::vector<std::string>& limits) const {
     std::size_t turn = 0;
     for (const CommandLine& line : all())
@@ -65,7 +65,7 @@ class SmallLimits : public EveryCommand {
   const bool long_ = longer(1) > 1;
 };
 
-TEST_F(SmallLimits, OfAddressSpace) {
+TEST_F(SmallLimits, AddressSpaceGivesALineOrSuccess) {
   std::vector<std::string> limits;
   const long steps = long_ ? 30 : 3;
   for (long i = 0; i <= steps; ++i)
@@ -73,7 +73,7 @@ TEST_F(SmallLimits, OfAddressSpace) {
   expectOfAll(limits);
 }
 
-TEST_F(SmallLimits, OfFilesAndDescriptors) {
+TEST_F(SmallLimits, FilesAndDescriptorsGiveALineOrSuccess) {
   expectOfAll({"-f 1", "-n 6", "-f 16", "-n 9", "-n 14"});
 }
 

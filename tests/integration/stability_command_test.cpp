@@ -1,4 +1,4 @@
-// The stability map by the commands' own words.
+// The stability map by the options of the commands.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -30,14 +30,14 @@ std::string sphereIn(const ScratchFolder& folder, const std::vector<std::string>
   return scene;
 }
 
-TEST(StabilityCommands, InfoSaysNothingWithoutADevice) {
+TEST(StabilityCommands, InfoHasNoRatioWithoutADevice) {
   const ScratchFolder folder;
   const std::string scene = sphereIn(folder, {"stiffness=500", "resolution=60"});
   EXPECT_EQ(runJson({"info", scene}).find("stability"), nullptr);
   EXPECT_EQ(run({"info", scene}).out.find("K*/K"), std::string::npos);
 }
 
-TEST(StabilityCommands, InfoTellsTheSmallestRatioOfTheScenesDevice) {
+TEST(StabilityCommands, InfoReportsTheSmallestRatioOfTheScenesDevice) {
   const ScratchFolder folder;
   const std::string scene =
       sphereIn(folder, {"stiffness=500", "resolution=60", "device.delay=2", "stabiliser=none"});
@@ -52,7 +52,7 @@ TEST(StabilityCommands, InfoTellsTheSmallestRatioOfTheScenesDevice) {
   EXPECT_NE(run({"info", scene}).out.find("smallest K*/K 0.40"), std::string::npos);
 }
 
-TEST(StabilityCommands, TheCouplingIsInTheMap) {
+TEST(StabilityCommands, MapIncludesTheCoupling) {
   const ScratchFolder folder;
   const std::string scene = sphereIn(
       folder, {"stiffness=5000", "resolution=60", "device.delay=2", "stabiliser=coupling"});

@@ -9,7 +9,7 @@
 namespace patina::test {
 namespace {
 
-TEST(Studies, WriteTablesWithTheMachineTheyWereMeasuredOn) {
+TEST(Studies, WriteTablesWithTheMachinesName) {
   const ScratchFolder folder;
   const Json report = runJson({"study", "field", "-o", folder / "out", "--quick"});
   for (const char* key : {"rows", "order_fitted", "order_expected", "tables", "files"})
@@ -39,7 +39,7 @@ TEST(Studies, WriteTablesWithTheMachineTheyWereMeasuredOn) {
   EXPECT_EQ(rows, report.at("rows").asArray().size());
 }
 
-TEST(Studies, PrintTheTableAndSayWhenPlotsAreMissing) {
+TEST(Studies, PrintTheTableAndReportMissingPlots) {
   const ScratchFolder folder;
   const Outcome outcome = Running({"-u", "DISPLAY", programPath().string(), "study", "field", "-o",
                                    folder / "out", "--quick"},
@@ -50,8 +50,8 @@ TEST(Studies, PrintTheTableAndSayWhenPlotsAreMissing) {
   EXPECT_NE(outcome.err.find("xvfb-run"), std::string::npos);
 }
 
-// The tables with most columns are those of contact and stability.
-TEST(Studies, PrintNoLineThatATerminalWouldBreak) {
+// Contact and stability have the tables with the most columns.
+TEST(Studies, PrintNoLineTooLongForATerminal) {
   const ScratchFolder folder;
   for (const std::string study : {"contact", "stability"}) {
     const Outcome outcome = run({"study", study, "-o", folder / "out", "--quick"});
@@ -61,7 +61,7 @@ TEST(Studies, PrintNoLineThatATerminalWouldBreak) {
       if (line.find(folder.path().string()) == std::string::npos) {
         EXPECT_LE(line.size(), 120u) << line;
       }
-    // Nothing of a table is left out for it but which program made it, which is the one that runs; a
+    // The printed table has every column but the program that made it, which is the running one; a
     // title may break between words.
     std::string words;
     std::istringstream text(outcome.out);
@@ -74,7 +74,7 @@ TEST(Studies, PrintNoLineThatATerminalWouldBreak) {
   }
 }
 
-TEST(Studies, UnknownNamesListTheKnownOnes) {
+TEST(Studies, ListKnownNamesForAnUnknownOne) {
   const ScratchFolder folder;
   expectOneLineError(run({"study", "weather", "-o", folder / "out"}), {"weather", "field", "all"});
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));

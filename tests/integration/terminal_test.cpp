@@ -39,7 +39,7 @@ class Terminal {
   std::string path_;
 };
 
-TEST(ProgressBar, IsDrawnOnATerminalAndWipedAway) {
+TEST(ProgressBar, IsDrawnOnATerminalAndErased) {
   const ScratchFolder folder;
   const std::string mesh = folder / "torus.ply";
   ASSERT_EQ(run({"model", "torus", "-o", mesh}).exit, 0);

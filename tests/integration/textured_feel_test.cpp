@@ -1,4 +1,4 @@
-// A Fourier texture on a mesh, felt, kept in a workspace and swapped, by commands.
+// A Fourier texture on a mesh is rendered, kept in a workspace and exchanged, by commands.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class TexturedFeel : public testing::Test {
                   2 * kPi / length, -height, height, more.c_str());
     writeFileAtomically(folder / name, text);
   }
-  // fz at each x.
+  // Returns fz at each x.
   std::vector<std::pair<double, double>> feel(std::vector<std::string> args) {
     args.insert(args.begin(), "feel");
     args.insert(args.end(), {"--path", path, "-o", folder / "forces.csv", "--resolution", "80"});
@@ -53,7 +53,7 @@ class TexturedFeel : public testing::Test {
   void expectWave(const std::vector<std::pair<double, double>>& felt, double length, double height,
                   double stiffness) {
     for (const auto& [x, force] : felt) {
-      const double along = (x + 0.04) * 50 / 80; // the coordinates are not those of the mesh
+      const double along = (x + 0.04) * 50 / 80; // coordinates differ from the mesh's
       EXPECT_NEAR(force, stiffness * (0.5e-3 + height * std::cos(2 * kPi * along / length)),
                   stiffness * 2e-6)
           << x;
@@ -63,17 +63,17 @@ class TexturedFeel : public testing::Test {
   std::string plane, bare, path;
 };
 
-TEST_F(TexturedFeel, IsTheHeightAtTheCoordinates) {
+TEST_F(TexturedFeel, RendersTheHeightAtTheCoordinates) {
   expectWave(feel({plane, "--texture", "1=" + (folder / "t.json")}), 5e-3, 1e-4, 500);
 }
 
-TEST_F(TexturedFeel, WithItsComplianceIsAsStiff) {
+TEST_F(TexturedFeel, HasTheStiffnessOfItsCompliance) {
   writeTexture("soft.json", 5e-3, 1e-4, ", \"compliance\": 0.005");
   expectWave(feel({plane, "--texture", "1=" + (folder / "soft.json")}), 5e-3, 1e-4, 200);
 }
 
 // T-A25
-TEST_F(TexturedFeel, WithoutItsFileIsThatOfTheBareMesh) {
+TEST_F(TexturedFeel, EqualsTheBareMeshWithoutItsFile) {
   const auto rigid = feel({plane}), without = feel({bare});
   EXPECT_EQ(rigid, without);
   EXPECT_NE(run({"feel", plane, "--path", path, "-o", folder / "f.csv", "--resolution", "80"})
@@ -81,7 +81,7 @@ TEST_F(TexturedFeel, WithoutItsFileIsThatOfTheBareMesh) {
             std::string::npos);
 }
 
-TEST_F(TexturedFeel, StaysInAWorkspaceAndIsSwappedAndTakenBack) {
+TEST_F(TexturedFeel, IsKeptInAWorkspaceExchangedAndUndone) {
   const std::string work = folder / "work";
   writeTexture("other.json", 3e-3, 5e-5);
   EXPECT_EQ(
@@ -91,7 +91,7 @@ TEST_F(TexturedFeel, StaysInAWorkspaceAndIsSwappedAndTakenBack) {
   expectWave(feel({work}), 3e-3, 5e-5, 500);
   EXPECT_EQ(run({"undo", work}).exit, 0);
   expectWave(feel({work}), 5e-3, 1e-4, 500);
-  // A layer beside the rigid surface: its profile stands on the plane.
+  // A layer next to the rigid surface: its profile stands on the plane.
   const auto layered = feel({work, "--texture-gain", "0.4"});
   for (const auto& [x, force] : layered) {
     const double along = (x + 0.04) * 50 / 80;
@@ -100,8 +100,8 @@ TEST_F(TexturedFeel, StaysInAWorkspaceAndIsSwappedAndTakenBack) {
   }
 }
 
-// F7: 0.1 mm at 1 mm is 1,300 N/m along the surface at 0.33 N, whatever the stiffness.
-TEST_F(TexturedFeel, ALayerThatTheDeviceCannotHoldIsTold) {
+// F7: 0.1 mm at 1 mm is 1,300 N/m along the surface at 0.33 N, at any stiffness.
+TEST_F(TexturedFeel, ReportsALayerTooStiffForTheDevice) {
   const std::string work = folder / "work";
   writeTexture("sharp.json", 1e-3, 1e-4);
   const auto told = [&] { return run({"feel", work, "--path", path, "-o", folder / "f.csv"}).err; };
@@ -112,10 +112,11 @@ TEST_F(TexturedFeel, ALayerThatTheDeviceCannotHoldIsTold) {
       0);
   EXPECT_EQ(told().find("as a layer"), std::string::npos);
   ASSERT_EQ(run({"scene", "-o", work, "--set", "texture.gain=0.4"}).exit, 0);
-  EXPECT_NE(told().find("sharper than this device can hold steady as a layer"), std::string::npos);
+  EXPECT_NE(told().find("too sharp for this device to render stably as a layer"),
+            std::string::npos);
 }
 
-TEST_F(TexturedFeel, SaysWhatIsWrong) {
+TEST_F(TexturedFeel, ReportsTheCauseOfErrors) {
   const std::string out = folder / "none.csv";
   const auto feels = [&](const std::string& texture) {
     return run({"feel", plane, "--path", path, "-o", out, "--texture", texture});

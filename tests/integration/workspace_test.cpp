@@ -24,7 +24,7 @@ class Workspaces : public testing::Test {
     path = folder.write("tip.csv", text);
   }
 
-  // The whole row but the time of the step, which is the machine's own.
+  // Returns the whole row but the time of the step, which depends on the machine.
   std::vector<std::vector<double>> forces(const std::string& file) const {
     CsvTable table = readCsv(file, {"t [s]"});
     const auto step = std::find(table.columns.begin(), table.columns.end(), "step [ns]");
@@ -38,7 +38,7 @@ class Workspaces : public testing::Test {
   std::string torus, workspace, path;
 };
 
-TEST_F(Workspaces, SavedAndOpenedAgainFeelsBitwiseAsTheMesh) {
+TEST_F(Workspaces, ReopenedOneRendersBitwiseLikeTheMesh) {
   ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus, "--set", "stiffness=700", "--set",
                  "friction.static=0.5", "--set", "friction.dynamic=0.3", "--set",
                  "tip.radius=0.4mm", "--set", "resolution=80", "--set", "sampler=kim"})
@@ -54,7 +54,7 @@ TEST_F(Workspaces, SavedAndOpenedAgainFeelsBitwiseAsTheMesh) {
   EXPECT_EQ(a, b);
   EXPECT_GT(b.back()[6], 0.5); // the comparison is of forces, not of zeros
 
-  // An option overrides the workspace for one run and leaves it as it is.
+  // An option overrides the workspace for one run and does not change it.
   const std::string before = readFile(workspace + "/workspace.json");
   const Json softer =
       runJson({"feel", workspace, "--path", path, "-o", folder / "c.csv", "--stiffness", "70"});
@@ -62,7 +62,7 @@ TEST_F(Workspaces, SavedAndOpenedAgainFeelsBitwiseAsTheMesh) {
   EXPECT_EQ(readFile(workspace + "/workspace.json"), before);
 }
 
-TEST_F(Workspaces, ListsWhatItHoldsWithoutChangingIt) {
+TEST_F(Workspaces, AreListedWithoutChanges) {
   ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus}).exit, 0);
   const Json listed = runJson({"scene", "-o", workspace});
   EXPECT_FALSE(listed.at("saved").asBool());
@@ -116,7 +116,7 @@ TEST_F(Workspaces, BadPosesAreNamedByFileAndLine) {
 }
 
 // K14: added, moved, felt, removed.
-TEST_F(Workspaces, SeveralObjectsAreFeltAsOne) {
+TEST_F(Workspaces, SeveralObjectsAreTouchedAsOne) {
   const std::string aside =
       folder.write("aside.txt", "1 0 0 0.2\n0 1 0 0\n0 0 1 0\n0 0 0 1 # metres\n");
   const std::string far = folder.write("far.txt", "1 0 0 0.3\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
@@ -128,7 +128,7 @@ TEST_F(Workspaces, SeveralObjectsAreFeltAsOne) {
   EXPECT_EQ(objects[1].at("name").asString(), "torus-2");
   EXPECT_EQ(objects[1].at("world_from_object").asArray()[0].asArray()[3].asNumber(), 0.2);
 
-  // What the path feels of the first object does not depend on the second.
+  // The force on the first object does not depend on the second.
   const Json feel = runJson({"feel", workspace, "--path", path, "-o", folder / "two.csv"});
   ASSERT_EQ(run({"feel", torus, "--path", path, "-o", folder / "one.csv", "--voxel", "0.8mm"}).exit,
             0);
@@ -148,8 +148,8 @@ TEST_F(Workspaces, SeveralObjectsAreFeltAsOne) {
   EXPECT_EQ(none.at("contact_ticks").asNumber(), 0);
 }
 
-// What is on because of the second object is said, and nothing while there is one.
-TEST_F(Workspaces, InfoNamesTheObjectsAndWhatTheirUnionCosts) {
+// Stages that are on because of the second object are listed, and none while there is one object.
+TEST_F(Workspaces, InfoNamesTheObjectsAndTheCostOfTheirUnion) {
   const std::string aside = folder.write("aside.txt", "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus}).exit, 0);
   const Json one = runJson({"info", workspace});
@@ -174,7 +174,7 @@ TEST_F(Workspaces, InfoNamesTheObjectsAndWhatTheirUnionCosts) {
   EXPECT_TRUE(listed);
 }
 
-TEST_F(Workspaces, ExportSaysWhichObjectATriangleBelongsTo) {
+TEST_F(Workspaces, ExportAssignsTrianglesToObjects) {
   const std::string aside = folder.write("aside.txt", "1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus, "--add", torus + "@" + aside, "--set",
                  "resolution=60"})
@@ -185,7 +185,7 @@ TEST_F(Workspaces, ExportSaysWhichObjectATriangleBelongsTo) {
   EXPECT_EQ(run({"field", workspace, "-o", folder / "two.vti"}).exit, 0);
 }
 
-TEST_F(Workspaces, ErrorsLeaveTheFolderAsItWas) {
+TEST_F(Workspaces, ErrorsKeepTheFolder) {
   ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus}).exit, 0);
   const std::string before = readFile(workspace + "/workspace.json");
   expectOneLineError(
@@ -211,7 +211,7 @@ TEST_F(Workspaces, RemovedObjectMakesRoomForAnother) {
                      {"no object"});
 }
 
-TEST_F(Workspaces, AnEmptyOneHasNoBoundsAndNoStages) {
+TEST_F(Workspaces, EmptyOneHasNoBoundsAndNoStages) {
   ASSERT_EQ(run({"scene", "-o", workspace}).exit, 0);
   const Json info = runJson({"info", workspace});
   EXPECT_TRUE(info.at("bounds").isNull());
@@ -233,7 +233,7 @@ TEST_F(Workspaces, SettingsThatFitOnlyTogetherAreAccepted) {
   EXPECT_EQ(values.at("friction.static").asNumber(), 0.2);
 }
 
-TEST_F(Workspaces, AFolderOfSomethingElseIsNeverTakenOver) {
+TEST_F(Workspaces, ForeignFolderIsNeverOverwritten) {
   const std::string photos = folder / "photos";
   std::filesystem::create_directories(photos);
   folder.write("photos/cat.txt", "meow");
@@ -242,7 +242,7 @@ TEST_F(Workspaces, AFolderOfSomethingElseIsNeverTakenOver) {
   EXPECT_FALSE(std::filesystem::exists(photos + "/workspace.json"));
 }
 
-TEST_F(Workspaces, TheirWorkspaceJsonStandsForTheFolder) {
+TEST_F(Workspaces, TheirJsonFileStandsForTheFolder) {
   ASSERT_EQ(run({"scene", "-o", workspace, "--add", torus, "--set", "stiffness=700"}).exit, 0);
   const Json info = runJson({"info", workspace + "/workspace.json", "--no-field"});
   EXPECT_EQ(info.at("kind").asString(), "workspace");

@@ -7,7 +7,7 @@
 
 namespace patina {
 
-inline constexpr int kMostMutants = 10000;
+inline constexpr int kMaxMutants = 10000;
 
 // Which one is on is read once, at start; which ones a test comes by is written at its end.
 struct MutantSwitch {
@@ -18,12 +18,12 @@ struct MutantSwitch {
     const char* path = std::getenv("PATINA_MUTANTS_REACHED");
     std::FILE* file = path ? std::fopen(path, "w") : nullptr;
     if (!file) return;
-    for (int i = 0; i < kMostMutants; ++i)
+    for (int i = 0; i < kMaxMutants; ++i)
       if (reached[i]) std::fprintf(file, "%d\n", i);
     std::fclose(file);
   }
   int on = 0;
-  bool reached[kMostMutants] = {};
+  bool reached[kMaxMutants] = {};
 };
 inline MutantSwitch mutant_switch;
 

@@ -1,5 +1,5 @@
-// The colours that came with a mesh, as the view draws them, against what VTK draws of the same
-// colours as values of points and as a texture through the mesh's own coordinates.
+// The view's picture of a mesh's own colours, compared with VTK's picture of the same colours as
+// point values and as a texture through the mesh's own coordinates.
 #include <array>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 #include "geometry/mesh/shapes.h"
 #include "picture/picture_support.h"
 #include "pictures/picture_file.h"
-#include "session/build/session.h"
+#include "session/open/session.h"
 #include "support/fresh_folder.h"
 #include "visualization/layers/image_surface.h"
 #include "visualization/surfaces/surface_data.h"
@@ -31,7 +31,8 @@ namespace {
 
 constexpr int kPixels = 400;
 
-std::array<float, 3> colorOf(const Vec3& p) { // of a corner of the cube
+// Returns the colour of a corner of the cube.
+std::array<float, 3> colorOf(const Vec3& p) {
   return {p.x() > 0 ? 1.0F : 0.2F, p.y() > 0 ? 0.9F : 0.1F, p.z() > 0 ? 0.8F : 0.0F};
 }
 std::array<float, 3> colorOfSide(std::size_t side) {
@@ -158,7 +159,7 @@ class ColorPicture : public testing::Test {
         if (most > 24) ++different;
       }
     EXPECT_GT(covered, kPixels * kPixels / 5);
-    EXPECT_LT(sum / covered, 1.5);         // of 255
+    EXPECT_LT(sum / covered, 1.5);         // levels of 255
     EXPECT_LT(different, 0.015 * covered); // along edges between two colours
   }
 
@@ -230,7 +231,7 @@ class ColorPicture : public testing::Test {
   vtkSmartPointer<vtkProperty> property_;
 };
 
-TEST_F(ColorPicture, OfVerticesIsThatOfPointValues) {
+TEST_F(ColorPicture, VertexColoursMatchPointValues) {
   std::string obj = vertices(true, "v ");
   for (const Triangle& t : mesh_.triangles)
     obj += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " +
@@ -245,7 +246,7 @@ TEST_F(ColorPicture, OfVerticesIsThatOfPointValues) {
   expectEqual(seen, drawTruth(*data, nullptr));
 }
 
-TEST_F(ColorPicture, OfFacesIsThatOfTheirPoints) {
+TEST_F(ColorPicture, FaceColoursMatchThoseOfTheirPoints) {
   std::string ply = "ply\nformat ascii 1.0\nelement vertex " +
                     std::to_string(mesh_.positions.size()) +
                     "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
@@ -263,7 +264,7 @@ TEST_F(ColorPicture, OfFacesIsThatOfTheirPoints) {
   expectEqual(seen, truthOfSides());
 }
 
-TEST_F(ColorPicture, OfMaterialsIsThatOfTheirFacesPoints) {
+TEST_F(ColorPicture, MaterialColoursMatchThoseOfTheirFacesPoints) {
   std::string mtl;
   for (std::size_t side = 0; side < 6; ++side)
     mtl += "newmtl side" + std::to_string(side) + "\nKd" + text(colorOfSide(side)) + "\n";
@@ -274,7 +275,7 @@ TEST_F(ColorPicture, OfMaterialsIsThatOfTheirFacesPoints) {
   expectEqual(seen, truthOfSides());
 }
 
-TEST_F(ColorPicture, OfATextureIsThatOfTheTexture) {
+TEST_F(ColorPicture, TextureColoursMatchTheTexture) {
   writePicture(folder_ / "checks.png", checks(), 8);
   writeFileAtomically(folder_ / "a.mtl", "newmtl skin\nmap_Kd checks.png\n");
   writeFileAtomically(folder_ / "a.obj",

@@ -17,7 +17,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Servers look for a number from 0 upwards: nobody's comes this far.
+// Servers search for a free number from 0 upwards: none comes this far.
 int numberOfNone() {
   return 5000 + getpid() % 20000;
 }
@@ -33,13 +33,13 @@ class DisplayOf {
   std::string before_;
 };
 
-TEST(RequireDisplay, SaysThatADisplayDoesNotAnswerWhenItsPatienceEnds) {
+TEST(RequireDisplay, ReportsASilentDisplayAfterItsTimeout) {
   PATINA_NEEDS_DISPLAY();
   const DisplayOf display(numberOfNone());
   const auto begin = std::chrono::steady_clock::now();
   try {
     requireDisplay(milliseconds(300));
-    FAIL() << "nobody can have answered";
+    FAIL() << "no answer is possible yet";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("does not answer"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("xvfb-run"), std::string::npos);
@@ -58,7 +58,7 @@ TEST(RequireDisplay, WaitsForAServerThatIsStillStarting) {
   EXPECT_NO_THROW(required.get());
 }
 
-TEST(OwnDisplay, ServersThatStartTogetherHaveNumbersOfTheirOwn) {
+TEST(OwnDisplay, ServersStartedTogetherHaveDifferentNumbers) {
   PATINA_NEEDS_DISPLAY();
   std::array<test::XServer, 6> servers;
   std::vector<int> numbers;

@@ -1,4 +1,4 @@
-// What lies far from the origin, as geo-referenced scans do, is drawn as what lies at it.
+// Objects far from the origin, such as geo-referenced scans, are drawn like objects at the origin.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr double kCube = 0.05;
 
-// A cube of 50 mm about `middle` with all that a view can show of it, but for the camera.
+// A cube of 50 mm about `middle` with all layers of a view; the camera is set apart.
 struct Shown {
   explicit Shown(const Vec3& middle) {
     TriangleMesh mesh = box(Vec3::Constant(kCube), 4);
@@ -36,7 +36,7 @@ struct Shown {
 
     SceneObject object = objectOf(mesh);
     ObjectPaint paint;
-    paint.layout = madeAtlas(mesh, 256);
+    paint.layout = generateAtlas(mesh, 256);
     const Vec3 corner = middle + Vec3(0.5, -0.5, 0.5) * kCube;
     const auto spot = [corner](const Vec3& p) { return (p - corner).norm() < 0.02; };
     paint.color =
@@ -93,8 +93,8 @@ struct Shown {
 
   std::shared_ptr<const SurfaceField> field;
   Scene scene;
-  BrushPlace brush;
-  MirrorPlace mirror;
+  BrushCursorState brush;
+  MirrorState mirror;
   ClipPlane clip;
   SceneView view;
 };
@@ -107,7 +107,7 @@ double shareApart(const Pixels& a, const Pixels& b) {
   return static_cast<double>(apart) / (a.width() * a.height());
 }
 
-TEST(FarPicture, IsThatOfTheSameThingAtTheOrigin) {
+TEST(FarPicture, EqualsThePictureAtTheOrigin) {
   PATINA_NEEDS_DISPLAY();
   Shown near(Vec3::Zero());
   const std::pair<const char*, std::set<Layer>> cases[] = {

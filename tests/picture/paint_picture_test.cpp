@@ -81,7 +81,7 @@ SceneObject plateWithDisc(const Vec3& centre, double radius, int size) {
   return object;
 }
 
-TEST_F(PaintPicture, ADiscOnAPlateOfTwoTrianglesIsWhereItWasPaintedAndAsLarge) { // K16
+TEST_F(PaintPicture, DiscOnTwoTrianglesHasItsPlaceAndSize) { // K16
   constexpr int kSize = 256;
   const Vec3 centre(0.012, -0.021, 0);
   show({plateWithDisc(centre, 0.02, kSize)});
@@ -97,7 +97,7 @@ TEST_F(PaintPicture, ADiscOnAPlateOfTwoTrianglesIsWhereItWasPaintedAndAsLarge) {
   EXPECT_NEAR(std::sqrt(disc.area * scale * scale / M_PI), 0.02, texel);
 }
 
-TEST_F(PaintPicture, WithoutTheLayerOrWithoutPaintItIsThePlainObject) {
+TEST_F(PaintPicture, ShowsThePlainObjectWithoutTheLayerOrPaint) {
   const SceneObject painted = plateWithDisc(Vec3::Zero(), 0.02, 128);
   show({painted});
   const Pixels off = drawn("off", {Layer::mesh});
@@ -113,12 +113,12 @@ TEST_F(PaintPicture, WithoutTheLayerOrWithoutPaintItIsThePlainObject) {
 }
 
 // A seam would be a line of the object's own colour, or of a neighbour chart's.
-TEST_F(PaintPicture, ASpherePaintedInItsOwnColourIsTheSpherePaintedNowhere) { // K16
+TEST_F(PaintPicture, SpherePaintedInItsOwnColourLooksUnpainted) { // K16
   SceneObject sphere = objectOf(icosphere(kRadius, 12));
   show({sphere});
   const Pixels plain = drawn("sphere_plain", {Layer::mesh}, ViewPreset::iso);
   ObjectPaint paint;
-  paint.layout = madeAtlas(*sphere.mesh, 256);
+  paint.layout = generateAtlas(*sphere.mesh, 256);
   EXPECT_GT(paint.layout.charts, 1);
   paint.color =
       imageOf(*sphere.mesh, *paint.layout.uvs, 256, kColorChannels, [](const Vec3&, float* rgba) {
@@ -155,7 +155,7 @@ TEST_F(PaintPicture, ReliefIsShadedAsIfTheSurfaceWereDisplaced) {
   TriangleMesh displaced = *sphere.mesh;
   for (Vec3& p : displaced.positions) p += height(p) * p.normalized();
   ObjectPaint paint;
-  paint.layout = madeAtlas(*sphere.mesh, 1024);
+  paint.layout = generateAtlas(*sphere.mesh, 1024);
   scene_.relief.height = 0.001;
   paint.relief = imageOf(*sphere.mesh, *paint.layout.uvs, 1024, 1, [&](const Vec3& p, float* g) {
     *g = static_cast<float>(height(p) / 0.001);
@@ -199,7 +199,7 @@ TEST_F(PaintPicture, StiffnessColoursAPlateOfTwoTrianglesByItsMap) { // K22, K23
   EXPECT_GT(pixels.share(dark, 0.88, 1, 0.2, 0.8), 0.01);
   EXPECT_GT(pixels.share(pale, 0.88, 1, 0.2, 0.8), 0.01);
 
-  view_.lockPaintRange(quantityOf(MaterialChannel::stiffness), ValueRange{0, 4000});
+  view_.setColors({{"stiffness", {.range = ValueRange{0, 4000}}}});
   const Pixels locked =
       drawn("stiffness_locked", {Layer::mesh, layerOf(quantityOf(MaterialChannel::stiffness))});
   EXPECT_EQ(view_.paintRange(quantityOf(MaterialChannel::stiffness)), (ValueRange{0, 4000}));
@@ -226,7 +226,7 @@ TEST_F(PaintPicture, ReliefIsColouredByItsHeightWithAPaleZero) {
   EXPECT_EQ(pixels.share(isSurface, 0.14, 0.85), 0);
 }
 
-TEST_F(PaintPicture, OnlyPaintedObjectsLeaveTheMesh) {
+TEST_F(PaintPicture, OnlyPaintedObjectsHaveTheirOwnLayer) {
   SceneObject red = plateWithDisc(Vec3::Zero(), 1, 64);
   red.world_from_object.translation() = Vec3(-0.06, 0, 0);
   SceneObject bare = objectOf(sheet(kSide, kSide, 1));
@@ -239,7 +239,7 @@ TEST_F(PaintPicture, OnlyPaintedObjectsLeaveTheMesh) {
   EXPECT_EQ(pixels.share(isRed, 0.5, 1), 0);
 }
 
-TEST_F(PaintPicture, TheBrushIsSeenOnLightAndOnDarkGround) {
+TEST_F(PaintPicture, BrushIsVisibleOnLightAndDarkGround) {
   for (const double ground : {0.02, 0.98}) {
     SceneObject object = plate(kSide);
     ObjectPaint paint = paintOf(object);
@@ -252,7 +252,7 @@ TEST_F(PaintPicture, TheBrushIsSeenOnLightAndOnDarkGround) {
     const auto dark = [](const Vec3& c) { return c.maxCoeff() < 50; };
     view_.setBrush(std::nullopt);
     const Pixels before = drawn(name + "_none", {Layer::mesh, Layer::color});
-    view_.setBrush(BrushPlace{Vec3::Zero(), Vec3::UnitZ(), 0.02, 0.01, {1, 0, 0}});
+    view_.setBrush(BrushCursorState{Vec3::Zero(), Vec3::UnitZ(), 0.02, 0.01, {1, 0, 0}});
     const Pixels after = drawn(name, {Layer::mesh, Layer::color});
     const auto more = [&](auto test) {
       return after.share(test, 0.2, 0.8) - before.share(test, 0.2, 0.8);
@@ -265,7 +265,7 @@ TEST_F(PaintPicture, TheBrushIsSeenOnLightAndOnDarkGround) {
   }
 }
 
-TEST_F(PaintPicture, TheSliceShowsMaterialWhereItIsPainted) {
+TEST_F(PaintPicture, SliceShowsPaintedMaterial) {
   SceneObject object = objectOf(icosphere(kRadius, 20));
   ObjectPaint paint;
   paint.material = materialOf(
@@ -280,7 +280,7 @@ TEST_F(PaintPicture, TheSliceShowsMaterialWhereItIsPainted) {
   view_.setField(std::make_shared<SurfaceField>(sampleFunction(
       [](const Vec3& p) { return p.norm() - kRadius; },
       gridAround(Box3(Vec3::Constant(-kRadius), Vec3::Constant(kRadius)), spec), spec.band)));
-  view_.setSlice({1, 0.5});
+  view_.setSlice({});
   const Pixels pixels =
       drawn("slice", {Layer::mesh, Layer::slice, layerOf(quantityOf(MaterialChannel::stiffness))},
             ViewPreset::minus_y);

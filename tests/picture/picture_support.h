@@ -1,5 +1,5 @@
-// Statistics of a rendered picture: what a golden file of OpenGL cannot promise from one machine to
-// the next.
+// Statistics of a rendered picture, because golden files of OpenGL differ from one machine to the
+// next.
 #pragma once
 
 #include <filesystem>
@@ -29,8 +29,8 @@ class Pixels {
     const auto* rgb = static_cast<const unsigned char*>(image_->GetScalarPointer(x, y, 0));
     return {double(rgb[0]), double(rgb[1]), double(rgb[2])};
   }
-  // Of the pixels in a part of the picture (fractions), how many satisfy the test, 0 .. 1. x0 skips
-  // the corner with the axes, whose colours are those of other things.
+  // Returns the share 0 .. 1 of the pixels in a part of the picture (fractions) that satisfy the
+  // test. x0 skips the corner with the axes, whose colours are those of other things.
   template <typename Test>
   double share(Test test, double x0 = 0.14, double x1 = 1, double y0 = 0, double y1 = 1) const {
     int hits = 0, all = 0;

@@ -21,7 +21,7 @@ WorkPrecisionTable table() {
   for (const char* sampler : {"kim", "high"})
     for (const int n : {64, 128, 256, 512}) {
       WorkPrecisionRow row;
-      row.knobs = {{"sampler", sampler}, {"resolution", n}};
+      row.settings = {{"sampler", sampler}, {"resolution", n}};
       const bool high = std::string(sampler) == "high";
       row.error = high ? 2e-2 * std::pow(n, -3.0) : 1e-3 * std::pow(n, -2.0);
       row.ns = (high ? 60 : 40) * std::pow(n / 64.0, 0.35);
@@ -40,7 +40,7 @@ Pixels drawn(const Plot& plot, const std::string& name) {
   return pixels;
 }
 
-TEST(Plot, GroupsRowsByTheirWordsInOrderOfTime) {
+TEST(Plot, GroupsRowsByTextColumnsInOrderOfTime) {
   const Plot plot = workPrecisionPlot(table());
   ASSERT_EQ(plot.series.size(), 2U);
   EXPECT_EQ(plot.series[0].name, "kim");

@@ -13,9 +13,9 @@
 namespace patina {
 namespace {
 
-// The mesh lies a little deeper than what presses it. What stands near the eye takes depth from all
-// that is farther, and the ball's back must not come to its front.
-TEST(ScanPicture, ABallIsSeenFromItsFrontWhateverStandsNearTheEye) {
+// The mesh lies a little deeper than the tip that presses it. Objects near the eye take depth
+// resolution from all farther ones, and the ball's back must not show through its front.
+TEST(ScanPicture, BallIsSeenFromItsFrontWithObjectsNearTheEye) {
   PATINA_NEEDS_DISPLAY();
   ScanPicture picture;
   picture.setMesh(std::make_shared<const TriangleMesh>(icosphere(0.05, 30)));
@@ -23,7 +23,7 @@ TEST(ScanPicture, ABallIsSeenFromItsFrontWhateverStandsNearTheEye) {
   window->SetOffScreenRendering(1);
   window->SetSize(400, 400);
   picture.attachTo(*window);
-  picture.lookAtAll(Vec3::UnitZ());
+  picture.resetCamera(Vec3::UnitZ());
   picture.setMarks({{0, Vec3(0, 0, 2)}, {1, Vec3(2, 2, 2)}, {2, Vec3(-2, -2, -0.1)}});
   picture.prepare();
   window->Render();
@@ -33,7 +33,7 @@ TEST(ScanPicture, ABallIsSeenFromItsFrontWhateverStandsNearTheEye) {
   const Pixels pixels(path);
   std::filesystem::remove(path);
   EXPECT_TRUE(isSurface(pixels.at(200, 200)));
-  double most = 0; // from a pixel to the next, well within the disc
+  double most = 0; // largest difference from a pixel to the next, well within the disc
   for (int y = 130; y < 270; ++y)
     for (int x = 130; x < 270; ++x)
       most = std::max(most, (pixels.at(x + 1, y) - pixels.at(x, y)).cwiseAbs().maxCoeff());

@@ -74,7 +74,7 @@ class ScenePicture : public ::testing::Test {
   SceneView view_;
 };
 
-TEST_F(ScenePicture, SeenFromAboveATorusFillsItsRingAndLeavesItsHole) {
+TEST_F(ScenePicture, TorusFromAboveFillsItsRingAndLeavesItsHole) {
   const Pixels pixels = drawn("above", {Layer::mesh}, ViewPreset::plus_z);
   EXPECT_EQ(pixels.width(), 960);
   // The ring's area over the picture's, from the fit: the outer diameter takes 1/1.08 of the
@@ -91,7 +91,7 @@ TEST_F(ScenePicture, HiddenLayersDrawNothing) {
 }
 
 TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
-  view_.setSlice({1, 0.5});
+  view_.setSlice({});
   const Pixels pixels = drawn("slice", {Layer::mesh, Layer::slice, Layer::extent});
   EXPECT_GT(pixels.share(isWarm), 0.02);
   EXPECT_GT(pixels.share(isCool), 0.02);
@@ -103,7 +103,7 @@ TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
             0.003);
 }
 
-TEST_F(ScenePicture, TheScaleBarIsARoundLengthWhateverTheZoomAndGoesWithWhatIsOpen) {
+TEST_F(ScenePicture, ScaleBarIsARoundLengthAtAnyZoomAndClosesWithTheScene) {
   // The longest dark run in the rows of the bar, right of the axes [pixels].
   const auto run = [](const Pixels& pixels) {
     int longest = 0;
@@ -140,7 +140,7 @@ TEST_F(ScenePicture, TheScaleBarIsARoundLengthWhateverTheZoomAndGoesWithWhatIsOp
   EXPECT_LT(run(drawn("nothing_open", {Layer::scale}, ViewPreset::plus_z)), 5);
 }
 
-TEST_F(ScenePicture, TheBandIsAShellInItsOwnColourWithALegend) { // K12, K13
+TEST_F(ScenePicture, BandIsAShellInItsOwnColourWithALegend) { // K12, K13
   EXPECT_EQ(drawn("no_band", {Layer::mesh, Layer::band}).share(isGold), 0);
   view_.setBand(TouchBand{TouchBand::Kind::offset, 0.003});
   const Pixels offset = drawn("offset_band", {Layer::mesh, Layer::band});
@@ -154,9 +154,9 @@ TEST_F(ScenePicture, TheBandIsAShellInItsOwnColourWithALegend) { // K12, K13
   EXPECT_EQ(magnet.share(isGold), 0);
 }
 
-TEST_F(ScenePicture, TheSliceShowsTheBandAsTintAndLine) {
+TEST_F(ScenePicture, SliceShowsTheBandAsTintAndLine) {
   view_.setBand(TouchBand{TouchBand::Kind::magnet, 0.003});
-  view_.setSlice({1, 0.5});
+  view_.setSlice({});
   const auto seen = [this](const char* name, const std::set<Layer>& layers) {
     return drawn(name, layers, ViewPreset::minus_y).share(isMagenta);
   };
@@ -167,7 +167,7 @@ TEST_F(ScenePicture, TheSliceShowsTheBandAsTintAndLine) {
   EXPECT_GT(seen("slice_band", {Layer::slice, Layer::band}), 0.3 * rings);
 }
 
-TEST_F(ScenePicture, ABandThatTheFieldDoesNotHoldIsWordsOnly) {
+TEST_F(ScenePicture, BandBeyondTheFieldIsWordsOnly) {
   view_.setBand(TouchBand{TouchBand::Kind::offset, 0.03});
   const Pixels pixels = drawn("band_too_wide", {Layer::mesh, Layer::band});
   EXPECT_EQ(pixels.share(isGold, 0.14, 1, 0, 0.9), 0);
@@ -184,7 +184,7 @@ TEST_F(ScenePicture, ToolForceAndLabelAreDrawnOverTheSurface) {
   EXPECT_GT(pixels.share(isSurface), 0.2);
 }
 
-TEST_F(ScenePicture, AForceArrowThatReachesBeyondTheObjectIsInThePicture) {
+TEST_F(ScenePicture, FitsAForceArrowBeyondTheObject) {
   ToolSample sample = pressed();
   sample.force = Vec3(0, 0, 3.2);
   view_.setTool(sample);
@@ -195,8 +195,8 @@ TEST_F(ScenePicture, AForceArrowThatReachesBeyondTheObjectIsInThePicture) {
   EXPECT_GT(pixels.share(isSurface), 0.2); // seen from its end it takes no room
 }
 
-// In a picture that nobody fits to it, wherever the tip is.
-TEST_F(ScenePicture, ALargeForceStaysInThePictureAndItsNumberOffTheCube) {
+// The picture is not fitted to the arrow, and the tip may be anywhere.
+TEST_F(ScenePicture, LargeForceStaysInThePictureAndItsNumberOffTheCube) {
   view_.showCube(true);
   view_.showOnly({Layer::mesh, Layer::tip});
   view_.setView(ViewPreset::minus_y);
@@ -237,7 +237,7 @@ TEST_F(ScenePicture, ALargeForceStaysInThePictureAndItsNumberOffTheCube) {
     window->RemoveRenderer(renderer);
 }
 
-TEST_F(ScenePicture, WithoutContactThereIsNoForceArrow) {
+TEST_F(ScenePicture, NoForceArrowWithoutContact) {
   ToolSample sample;
   sample.tip = sample.vcp = Vec3(0, -kMajor, 0.03);
   view_.setTool(sample);
@@ -253,14 +253,14 @@ TEST_F(ScenePicture, NodesNearTheTipShowBothSidesOfTheSurface) {
   EXPECT_GT(pixels.share(isCool), 0.0002);
 }
 
-TEST_F(ScenePicture, TheIsoSurfaceAtZeroTakesTheMeshsPlace) {
+TEST_F(ScenePicture, IsoSurfaceAtZeroReplacesTheMesh) {
   view_.setIso(0);
   const Pixels pixels = drawn("iso_0", {Layer::mesh, Layer::iso});
   EXPECT_GT(pixels.share(isCool), 0.2);
-  EXPECT_LT(pixels.share(isSurface), 0.002) << "two that lie in one another fight";
+  EXPECT_LT(pixels.share(isSurface), 0.002) << "two coincident surfaces flicker";
 }
 
-TEST_F(ScenePicture, TheAxesLettersAreWholeInASmallPicture) {
+TEST_F(ScenePicture, AxesLettersAreWholeInASmallPicture) {
   const Pixels pixels = drawn("small", {Layer::mesh}, ViewPreset::iso, {680, 440});
   const auto blue = [](const Vec3& c) { return c[2] > c[0] + 60 && c[2] > c[1] + 30; };
   int y = pixels.height() / 2, across = 0;
@@ -275,12 +275,12 @@ TEST_F(ScenePicture, IsoSurfaceAloneLooksLikeTheShape) {
   EXPECT_GT(pixels.share(isCool), 0.2);
 }
 
-TEST_F(ScenePicture, ATipNobodyMovedRestsOnTheSurface) {
+TEST_F(ScenePicture, UnmovedTipRestsOnTheSurface) {
   const Pixels pixels = drawn("resting", {Layer::mesh, Layer::tip}, ViewPreset::plus_y);
   EXPECT_GT(pixels.share(isTool, 0.4, 0.6, 0.4, 0.6), 0.001);
 }
 
-TEST(Picture, SaysWhatToDoWithoutADisplay) {
+TEST(Picture, GivesAdviceWithoutADisplay) {
   const char* display = std::getenv("DISPLAY");
   const std::string kept = display != nullptr ? display : "";
   setenv("DISPLAY", "", 1);
@@ -297,10 +297,59 @@ TEST(Picture, SaysWhatToDoWithoutADisplay) {
     unsetenv("DISPLAY");
 }
 
-TEST(Picture, RefusesSizesThatNoPictureHas) {
+TEST(Picture, RefusesInvalidSizes) {
   SceneView view;
   EXPECT_THROW(renderToPng(view, {0, 100}, "x.png"), Error);
   EXPECT_THROW(renderToPng(view, {100, 100000}, "x.png"), Error);
+}
+
+TEST_F(ScenePicture, NamesWhatIsInFrontOnARay) {
+  drawn("front", {Layer::mesh});
+  const Ray down{Vec3(kMajor, 0, 1), -Vec3::UnitZ()};
+  const auto front = view_.frontAlong(down);
+  ASSERT_TRUE(front);
+  EXPECT_EQ(front->layer, Layer::mesh);
+  EXPECT_NEAR(front->point.z(), kMinor, 1e-5);
+  EXPECT_FALSE(view_.frontAlong({Vec3(0, 0, 1), -Vec3::UnitZ()})) << "through the hole";
+
+  view_.setIso(0.003);
+  drawn("front", {Layer::mesh, Layer::iso});
+  const auto shell = view_.frontAlong(down);
+  ASSERT_TRUE(shell);
+  EXPECT_EQ(shell->layer, Layer::iso);
+  EXPECT_NEAR(shell->point.z(), kMinor + 0.003, 1e-5);
+
+  view_.setSlice({Vec3::UnitZ(), 0}); // z = 0, seen from above: the upper half is hidden
+  drawn("front", {Layer::mesh, Layer::slice}, ViewPreset::plus_z);
+  const double near_surface = kMajor + kMinor - 0.002;
+  const auto cut = view_.frontAlong({Vec3(near_surface, 0, 1), -Vec3::UnitZ()});
+  ASSERT_TRUE(cut);
+  EXPECT_EQ(cut->layer, Layer::slice);
+  EXPECT_NEAR(cut->point.z(), 0, 1e-9);
+  const auto floor = view_.frontAlong(down); // the band does not reach the middle
+  ASSERT_TRUE(floor);
+  EXPECT_EQ(floor->layer, Layer::mesh);
+  EXPECT_NEAR(floor->point.z(), -kMinor, 1e-4) << "the inner side of the lower half";
+}
+
+TEST_F(ScenePicture, FindsTheVisibleVertexNearARay) {
+  view_.setMesh(std::make_shared<TriangleMesh>(torus(kMajor, kMinor, 16, 8)));
+  drawn("vertex", {Layer::mesh});
+  const Ray down{Vec3(kMajor + 0.001, 0.0005, 1), -Vec3::UnitZ()};
+  const auto vertex = view_.vertexNear(down, {down.origin + Vec3(0.002, 0, 0), down.direction});
+  ASSERT_TRUE(vertex);
+  EXPECT_LT((*vertex - Vec3(kMajor, 0, kMinor)).norm(), 1e-9) << "not the one below it";
+  EXPECT_FALSE(view_.vertexNear(down, {down.origin + Vec3(0.0005, 0, 0), down.direction}));
+}
+
+TEST_F(ScenePicture, ColoursTheSliceByItsScale) {
+  const auto yellow = [](const Vec3& c) { return c[0] > 200 && c[1] > 190 && c[2] < 90; };
+  EXPECT_EQ(drawn("scale_standard", {Layer::slice}).share(yellow), 0);
+  view_.setColors({{"slice", parseColorScale("viridis,range=-1:1mm")}});
+  EXPECT_GT(drawn("scale_viridis", {Layer::slice}).share(yellow), 0.02) << "beyond 1 mm outside";
+  const auto range = view_.shownRange("slice");
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->high, 1e-3, 1e-12);
 }
 
 } // namespace

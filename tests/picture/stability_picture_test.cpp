@@ -57,7 +57,7 @@ TEST(StabilityPicture, ColoursTheSurfaceByItsVerticesAndShowsTheScale) {
 }
 
 // A shell over the colours would shift them away from the scale.
-TEST(StabilityPicture, IsTheSameUnderABandWhoseSliceAloneIsTinted) {
+TEST(StabilityPicture, IsTheSameUnderABandThatTintsOnlyTheSlice) {
   PATINA_NEEDS_DISPLAY();
   SceneView view;
   const auto mesh = std::make_shared<const TriangleMesh>(icosphere(0.03, 20));

@@ -16,7 +16,7 @@ std::size_t nodeOf(int x, int y, int z) {
   return static_cast<std::size_t>(64 * z + 8 * y + x);
 }
 
-// All nodes of the blocks from `low` to `high`, painted over whatever the base is.
+// Paints all nodes of the blocks from `low` to `high` for any base.
 void fill(MaterialMap& map, MaterialChannel channel, int low, int high,
           const std::function<double(const Vec3&)>& value) {
   for (int bz = low; bz < high; ++bz)
@@ -33,7 +33,7 @@ void fill(MaterialMap& map, MaterialChannel channel, int low, int high,
       }
 }
 
-TEST(MaterialMap, NothingPaintedIsTheBaseBitForBit) {
+TEST(MaterialMap, UnpaintedMapIsTheBaseBitForBit) {
   const MaterialMap map(kOrigin, kVoxel);
   const Material base{612.7, 0.3, 0.2, 1.5, 1e-5};
   EXPECT_EQ(map.at({0, 0, 0}, base), base);
@@ -57,8 +57,8 @@ TEST(MaterialMap, AffineFieldIsReproducedAcrossBlocks) {
   }
 }
 
-// K18: what shows through is the base as it is now, not as it was when painted.
-TEST(MaterialMap, PaintLiesOverABaseThatMayChange) {
+// K18: the present base shows through, not the base at the time of painting.
+TEST(MaterialMap, PaintFollowsAChangedBase) {
   MaterialMap map(kOrigin, kVoxel);
   MaterialLayer& layer = map.writable({0, 0, 0}, MaterialChannel::damping);
   layer.value.fill(0.25f * 8); // weight 0.25 of 8 N s/m
@@ -97,7 +97,7 @@ TEST(MaterialMap, CopiesShareLayersUntilOneIsWritten) {
             map.layer({4, -2, 0}, MaterialChannel::roughness));
 }
 
-TEST(MaterialMap, SameIsBitwiseAndKnowsThatAbsentIsZero) {
+TEST(MaterialMap, SameIsBitwiseAndTreatsAbsentAsZero) {
   MaterialMap a(kOrigin, kVoxel), b(kOrigin, kVoxel);
   b.writable({1, 2, 3}, MaterialChannel::damping);
   EXPECT_TRUE(same(a, b));
@@ -111,7 +111,7 @@ TEST(MaterialMap, SameIsBitwiseAndKnowsThatAbsentIsZero) {
   EXPECT_TRUE(b.blocks().empty());
 }
 
-TEST(MaterialMap, GridsThatMakeNoSenseAreRefused) {
+TEST(MaterialMap, InvalidGridsAreRejected) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(MaterialMap(kOrigin, 0), std::invalid_argument);
   EXPECT_THROW(MaterialMap(kOrigin, nan), std::invalid_argument);
@@ -128,7 +128,7 @@ TEST(MaterialMap, BytesGrowByTheLayersThatArePainted) {
   EXPECT_EQ(map.bytes() - one, sizeof(MaterialLayer));
 }
 
-TEST(MaterialChannels, NamesUnitsAndValuesBelongTogether) {
+TEST(MaterialChannels, NamesUnitsAndValuesMatch) {
   Material material;
   double value = 1;
   for (const MaterialChannel channel : kAllMaterialChannels) valueOf(material, channel) = value++;
@@ -138,7 +138,7 @@ TEST(MaterialChannels, NamesUnitsAndValuesBelongTogether) {
   EXPECT_EQ(unit(MaterialChannel::dynamic_friction), "");
 }
 
-TEST(MaterialMap, APublishedLayerIsCopiedThoughNobodyHoldsItAnyMore) {
+TEST(MaterialMap, PublishedLayerIsCopiedEvenIfReleased) {
   MaterialMap map(Vec3::Zero(), 1e-3);
   const MaterialMap::Index at{0, 0, 0};
   map.writable(at, MaterialChannel::stiffness).value[0] = 1;

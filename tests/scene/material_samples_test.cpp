@@ -19,17 +19,17 @@ namespace {
 
 constexpr double kSampleVoxel = 0x1p-10;
 
-struct FeltAt {
+struct HapticAt {
   Material material;
   MaterialGradients gradients;
 };
-FeltAt feltAt(const MaterialSamples& samples, const Vec3& p) {
-  FeltAt at{samples.base, {}};
+HapticAt compositedAt(const MaterialSamples& samples, const Vec3& p) {
+  HapticAt at{samples.base, {}};
   MaterialReader(samples, Pose::Identity()).read(p, at.material, at.gradients);
   return at;
 }
 
-// T-K22a: an affine field, exact in floats at the nodes, is one between them.
+// T-K22a: an affine field, exact in floats at the nodes, is reproduced between them.
 TEST(MaterialSamples, ReproduceAnAffineFieldToRounding) {
   const auto affine = [](const Vec3& p) {
     return 1024 + 0x1p12 * p.x() - 0x1p13 * p.y() + 0x1p11 * p.z();
@@ -40,14 +40,14 @@ TEST(MaterialSamples, ReproduceAnAffineFieldToRounding) {
   std::uniform_real_distribution<double> in(-11e-3, 11e-3);
   for (int i = 0; i < 5000; ++i) {
     const Vec3 p(in(random), in(random), in(random));
-    const FeltAt at = feltAt(*samples, p);
+    const HapticAt at = compositedAt(*samples, p);
     ASSERT_NEAR(at.material.stiffness, affine(p), 1e-14 * 1024);
     ASSERT_NEAR(at.material.stiffness, map->at(p, Material{}).stiffness, 1e-14 * 1024);
     ASSERT_LT((at.gradients.stiffness - Vec3(0x1p12, -0x1p13, 0x1p11)).norm(), 1e-9);
   }
 }
 
-// One look-up against the map's own, over blocks, borders and nodes; a second channel beside it.
+// One look-up against the map's own, over blocks, borders and nodes, with a second channel.
 TEST(MaterialSamples, AgreeWithTheMapEverywhere) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> value(0, 900), weight(0, 1);
@@ -69,7 +69,7 @@ TEST(MaterialSamples, AgreeWithTheMapEverywhere) {
   int painted = 0;
   for (int i = 0; i < 40000; ++i) {
     const Vec3 p(in(random), in(random), in(random));
-    const Material wanted = map->at(p, base), found = feltAt(*samples, p).material;
+    const Material wanted = map->at(p, base), found = compositedAt(*samples, p).material;
     ASSERT_NEAR(found.stiffness, wanted.stiffness, 1e-10);
     ASSERT_NEAR(found.dynamic_friction, wanted.dynamic_friction, 1e-10);
     ASSERT_EQ(found.damping, base.damping);
@@ -80,13 +80,13 @@ TEST(MaterialSamples, AgreeWithTheMapEverywhere) {
   }
   EXPECT_GT(painted, 100);
   const double far = 1e300, nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(feltAt(*samples, Vec3(far, -far, 0)).material, base);
-  EXPECT_EQ(feltAt(*samples, Vec3(nan, 0, 0)).material, base);
+  EXPECT_EQ(compositedAt(*samples, Vec3(far, -far, 0)).material, base);
+  EXPECT_EQ(compositedAt(*samples, Vec3(nan, 0, 0)).material, base);
 }
 
-// Of an object that is turned and moved: value and gradient are those of the map at the
-// place in the object's own frame.
-TEST(MaterialReader, ReadsInTheWorldWhatLiesInTheObject) {
+// For a rotated and moved object, value and gradient are those of the map at the point in the
+// object's own frame.
+TEST(MaterialReader, ReadsObjectValuesAtWorldPoints) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> value(0, 900);
   MaterialMap map(Vec3(1e-3, -2e-3, 0.3e-3), kSampleVoxel);
@@ -105,19 +105,19 @@ TEST(MaterialReader, ReadsInTheWorldWhatLiesInTheObject) {
   const Pose object_from_world = world_from_object.inverse();
   const MaterialReader reader(*samples, object_from_world);
   const auto at = [&](const Vec3& p) {
-    FeltAt felt{base, {}};
+    HapticAt felt{base, {}};
     reader.read(p, felt.material, felt.gradients);
     return felt;
   };
   std::uniform_real_distribution<double> in(0, 15), part(0.1, 0.9);
   constexpr double kStep = 1e-7;
   for (int i = 0; i < 2000; ++i) {
-    // Within a cell, so that differences are those of one trilinear.
+    // Points lie within a cell, so that differences are those of one trilinear function.
     const Vec3 cell(std::floor(in(random)), std::floor(in(random)), std::floor(in(random)));
     const Vec3 own =
         map.origin() + kSampleVoxel * (cell + Vec3(part(random), part(random), part(random)));
     const Vec3 p = world_from_object * own;
-    const FeltAt felt = at(p);
+    const HapticAt felt = at(p);
     const Material told = map.at(own, base);
     ASSERT_NEAR(felt.material.stiffness, told.stiffness, 1e-9);
     ASSERT_NEAR(felt.material.damping, told.damping, 1e-9);
@@ -125,7 +125,7 @@ TEST(MaterialReader, ReadsInTheWorldWhatLiesInTheObject) {
     ASSERT_EQ(felt.material.static_friction, base.static_friction);
     for (int a = 0; a < 3; ++a) {
       const Vec3 d = kStep * Vec3::Unit(a);
-      const FeltAt above = at(p + d), below = at(p - d);
+      const HapticAt above = at(p + d), below = at(p - d);
       ASSERT_NEAR(felt.gradients.stiffness[a],
                   (above.material.stiffness - below.material.stiffness) / (2 * kStep), 1e-3);
       ASSERT_NEAR(felt.gradients.roughness[a],
@@ -148,9 +148,9 @@ TEST(MaterialReader, ReadsTheSameOnEveryProcessor) {
   int painted = 0;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(in(random), in(random), in(random));
-    FeltAt felt{samples->base, {}};
+    HapticAt felt{samples->base, {}};
     reader.read(p, felt.material, felt.gradients);
-    FeltAt plain{samples->base, {}};
+    HapticAt plain{samples->base, {}};
     double* const into[] = {plain.gradients.stiffness.data(), plain.gradients.roughness.data()};
     material_plain::lookUp(reader.view(), p.data(), &plain.material.stiffness, into);
     painted += !(felt.material == samples->base);
@@ -168,17 +168,17 @@ TEST(MaterialSamples, HoldTheExtremesOfEveryChannelAndTheBase) {
   coveredMap(
       kSampleVoxel, cube(1e-3), MaterialChannel::damping, [](const Vec3&) { return 3; }, map);
   const auto samples = materialSamples(*map, Material{}, nullptr, nullptr);
-  EXPECT_EQ(samples->most.stiffness, 2000);
-  EXPECT_EQ(samples->least.stiffness, 100);
-  EXPECT_EQ(samples->most.damping, 3);
-  EXPECT_EQ(samples->least.damping, 0);
-  EXPECT_EQ(samples->most.roughness, 0);
+  EXPECT_EQ(samples->max.stiffness, 2000);
+  EXPECT_EQ(samples->min.stiffness, 100);
+  EXPECT_EQ(samples->max.damping, 3);
+  EXPECT_EQ(samples->min.damping, 0);
+  EXPECT_EQ(samples->max.roughness, 0);
   EXPECT_FALSE(samples->painted[4]);
 }
 
-// What was added to a base that has become smaller since is held within the channel's range: a
-// negative stiffness or damping would drive the hand.
-TEST(MaterialSamples, NothingAddedLeadsOutOfTheRange) {
+// Values added to a base that was reduced later are clamped to the channel's range: a negative
+// stiffness or damping would drive the hand.
+TEST(MaterialSamples, AddedValuesStayWithinTheRange) {
   auto map = std::make_shared<MaterialMap>(Vec3::Zero(), kSampleVoxel);
   const std::pair<MaterialChannel, float> kAdded[] = {{MaterialChannel::stiffness, -900.0F},
                                                       {MaterialChannel::static_friction, 9.9F},
@@ -191,35 +191,35 @@ TEST(MaterialSamples, NothingAddedLeadsOutOfTheRange) {
   base.static_friction = 0.5;
   base.damping = 1;
   const auto samples = materialSamples(*map, base, nullptr, nullptr);
-  EXPECT_EQ(samples->least.stiffness, 0);
-  EXPECT_EQ(samples->most.static_friction, rangeOf(MaterialChannel::static_friction).most);
-  EXPECT_EQ(samples->least.damping, 0);
+  EXPECT_EQ(samples->min.stiffness, 0);
+  EXPECT_EQ(samples->max.static_friction, rangeOf(MaterialChannel::static_friction).max);
+  EXPECT_EQ(samples->min.damping, 0);
   std::mt19937 random(4);
   std::uniform_real_distribution<double> in(-1 * kSampleVoxel, 8 * kSampleVoxel);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(in(random), in(random), in(random));
-    const Material felt = feltAt(*samples, p).material, told = map->at(p, base);
+    const Material felt = compositedAt(*samples, p).material, told = map->at(p, base);
     for (const MaterialChannel channel : kAllMaterialChannels) {
       ASSERT_GE(valueOf(felt, channel), 0) << name(channel);
-      ASSERT_LE(valueOf(felt, channel), rangeOf(channel).most) << name(channel);
+      ASSERT_LE(valueOf(felt, channel), rangeOf(channel).max) << name(channel);
       ASSERT_NEAR(valueOf(felt, channel), valueOf(told, channel), 1e-10) << name(channel);
     }
   }
 }
 
-TEST(MaterialSamples, OfAnEmptyMapAreNothing) {
+TEST(MaterialSamples, AreEmptyForAnEmptyMap) {
   EXPECT_EQ(materialSamples(MaterialMap(Vec3::Zero(), kSampleVoxel), Material{}, nullptr, nullptr),
             nullptr);
 }
 
-// An edit makes its own blocks and those that read them, and no other; the result is that of a
-// fresh build, also where paint is taken away.
-TEST(MaterialSamples, ShareWhatAnEditDidNotTouch) {
+// An edit computes its own blocks and those that read them, and no other; the result equals a fresh
+// build, also where paint is removed.
+TEST(MaterialSamples, ShareBlocksThatAnEditKeeps) {
   const Material base;
   auto before = coveredMap(kSampleVoxel, cube(30e-3), MaterialChannel::stiffness,
                            [](const Vec3& p) { return 800 + 1e4 * p.x(); });
   const auto old = materialSamples(*before, base, nullptr, nullptr);
-  const auto check = [&](const MaterialMap& map, std::size_t most_made) {
+  const auto check = [&](const MaterialMap& map, std::size_t max_made) {
     const auto start = std::chrono::steady_clock::now();
     const auto now = materialSamples(map, base, before.get(), old.get());
     const std::chrono::duration<double, std::micro> us = std::chrono::steady_clock::now() - start;
@@ -228,14 +228,14 @@ TEST(MaterialSamples, ShareWhatAnEditDidNotTouch) {
     for (const auto& block : now->block)
       made += std::find(old->block.begin(), old->block.end(), block) == old->block.end();
     std::printf("%zu of %zu blocks made anew in %.0f us\n", made, now->block.size(), us.count());
-    EXPECT_LE(made, most_made);
+    EXPECT_LE(made, max_made);
     EXPECT_GE(made, 1u);
     ASSERT_EQ(now->block_at, fresh->block_at);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> in(-0.035, 0.035);
     for (int i = 0; i < 20000; ++i) {
       const Vec3 p(in(random), in(random), in(random));
-      ASSERT_EQ(feltAt(*now, p).material, feltAt(*fresh, p).material);
+      ASSERT_EQ(compositedAt(*now, p).material, compositedAt(*fresh, p).material);
     }
   };
   MaterialMap edited = *before;
@@ -249,7 +249,7 @@ TEST(MaterialSamples, ShareWhatAnEditDidNotTouch) {
     if (index != MaterialMap::Index{0, 0, 0} && index != MaterialMap::Index{3, 3, 3})
       less.writable(index, MaterialChannel::stiffness) =
           *before->layer(index, MaterialChannel::stiffness);
-  // Copies of layers are other layers; take those of `before` itself.
+  // Copies of layers are separate layers; use those of `before` itself.
   MaterialMap shrunk = *before;
   shrunk.writable({0, 0, 0}, MaterialChannel::stiffness) = MaterialLayer{};
   shrunk.writable({3, 3, 3}, MaterialChannel::stiffness) = MaterialLayer{};

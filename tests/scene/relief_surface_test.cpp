@@ -54,8 +54,8 @@ TEST(ReliefSurface, HeightAndSlopeConvergeWithTheTexel) {
   EXPECT_LT(height_error.back(), 1e-6 * s * 10);
 }
 
-// The slope is the height's own derivative, across texels and tiles.
-TEST(ReliefSurface, TheSlopeIsTheDerivativeOfTheHeightAlsoOfNoise) {
+// The slope is the derivative of the height, across texels and tiles.
+TEST(ReliefSurface, SlopeIsTheDerivativeOfTheHeightAlsoForNoise) {
   const Slab& plane = fineSlab();
   std::mt19937 random(2);
   std::uniform_real_distribution<double> g(-1, 1), in(-0.49 * kSide, 0.49 * kSide);
@@ -83,7 +83,7 @@ TEST(ReliefSurface, IsFlatWhereTheImageHasNoTiles) {
   EXPECT_GE(at.face, 0);
 }
 
-TEST(ReliefSurface, AFaceThatIsNotThereMeansNoHeight) {
+TEST(ReliefSurface, MissingFaceHasNoHeight) {
   const Slab& plane = fineSlab();
   const auto relief =
       reliefOn(plane.faces, test::reliefImage(64, [](double, double) { return 1; }), 1e-3);
@@ -92,9 +92,9 @@ TEST(ReliefSurface, AFaceThatIsNotThereMeansNoHeight) {
   EXPECT_EQ(reliefAt(*relief, Vec3(0, nan, 0), 0).height, 0);
 }
 
-// Walking over the faces ends at the closest one: as near as the tree's answer, from points near
+// A walk over the faces ends at the closest one: as near as the tree's answer, from points near
 // the surface, starting some faces away.
-TEST(ReliefSurface, TheWalkFindsTheClosestFace) {
+TEST(ReliefSurface, WalkFindsTheClosestFace) {
   const TriangleMesh mesh = vase();
   const TriangleTree tree(mesh);
   const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));
@@ -123,13 +123,13 @@ TEST(ReliefSurface, TheWalkFindsTheClosestFace) {
     lost += at.distance > wanted + 1e-8;
   }
   std::printf("%d of %d walks end on another face than the closest\n", lost, count);
-  // In a concave corner the wall where the walk began is a place of its own to end; the stage sees
-  // how far off that is and begins afresh.
+  // In a concave corner the walk may end on the wall where it began; the stage detects the distance
+  // and starts again.
   EXPECT_LT(lost, count / 100);
 }
 
-// Step by step along a path the last face leads to the next one, over edges, a rim and vertices.
-TEST(ReliefSurface, AWalkAlongAPathNeverLosesTheSurface) {
+// Along a path each face leads to the next one, over edges, boundaries and vertices.
+TEST(ReliefSurface, WalkAlongAPathStaysOnTheSurface) {
   const TriangleMesh mesh = icosphere(0.03, 40);
   const TriangleTree tree(mesh);
   const auto faces = reliefFaces(mesh, CornerUvs(mesh.triangles.size()));

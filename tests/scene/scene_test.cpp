@@ -26,7 +26,7 @@ TEST(Scene, DefaultsAreValid) {
   EXPECT_EQ(sceneError(Scene{}), "");
 }
 
-TEST(Scene, RefusesValuesThatMakeNoSenseAndNamesTheirKey) {
+TEST(Scene, RejectsInvalidValuesAndNamesTheirKey) {
   const auto broken = [](const std::function<void(Scene&)>& change) {
     Scene scene;
     change(scene);
@@ -80,7 +80,7 @@ TEST(Scene, RefusesBadObjects) {
   EXPECT_EQ(sceneError(scene), "object 'cup' has no triangles");
 }
 
-TEST(Scene, RefusesPosesThatAreNotRigid) {
+TEST(Scene, RejectsNonRigidPoses) {
   Scene scene;
   scene.objects = {object("cup")};
   Pose& pose = scene.objects[0].world_from_object;

@@ -72,7 +72,7 @@ TEST(SceneValues, AbsentFeaturesAreNotListed) {
   }
 }
 
-TEST(SceneValues, NoneMakesAFeatureAbsent) {
+TEST(SceneValues, NoneRemovesAFeature) {
   Scene scene;
   setValues(scene, withEverything());
   setValue(scene, "surface.sides", "auto");
@@ -152,7 +152,7 @@ TEST(SceneValues, LengthsTakeUnits) {
   EXPECT_DOUBLE_EQ(*scene.field.voxel, 2e-5);
 }
 
-TEST(SceneValues, OfResolutionAndVoxelTheLastHolds) {
+TEST(SceneValues, LastOfResolutionAndVoxelApplies) {
   Scene scene;
   setValue(scene, "voxel", "1mm");
   setValue(scene, "resolution", "80");
@@ -167,7 +167,7 @@ TEST(SceneValues, OneCoefficientIsPlainCoulombFriction) {
   EXPECT_EQ(scene.haptics.friction->dynamic_coefficient, 0.4);
 }
 
-TEST(SceneValues, TheOrderOfSeveralDoesNotMatter) {
+TEST(SceneValues, OrderOfSeveralDoesNotMatter) {
   for (const List& pair : {List{{"friction.static", "0.5"}, {"friction.dynamic", "0.3"}},
                            List{{"friction.static", "0.5"}, {"friction.dynamic", "0"}},
                            List{{"resolution", "12"}, {"band", "4"}}}) {
@@ -178,7 +178,7 @@ TEST(SceneValues, TheOrderOfSeveralDoesNotMatter) {
   }
 }
 
-TEST(SceneValues, ARefusedValueLeavesTheSceneAsItWas) {
+TEST(SceneValues, RejectedValueLeavesTheSceneUnchanged) {
   Scene scene;
   setValues(scene, withEverything());
   for (const auto& [key, value] : List{{"stiffness", "-1"},
@@ -202,20 +202,20 @@ TEST(SceneValues, ARefusedValueLeavesTheSceneAsItWas) {
   EXPECT_EQ(values(scene), withEverything());
 }
 
-TEST(SceneValues, TheUsualWordOfEveryKeyIsThatOfANewScene) {
+TEST(SceneValues, DefaultOfEveryKeyIsThatOfANewScene) {
   const List fresh = values(Scene{});
-  for (const auto& [key, value] : fresh) EXPECT_EQ(sceneKey(key).usual, value) << key;
+  for (const auto& [key, value] : fresh) EXPECT_EQ(sceneKey(key).default_value, value) << key;
   for (const char* key : {"contact", "surface.sides", "merge.redistance", "relief.mode",
                           "relief.height", "relief.force", "material.force", "paint.size",
                           "stabiliser", "damping", "voxel", "device.mass"}) {
     Scene scene;
-    setValue(scene, key, sceneKey(key).usual);
+    setValue(scene, key, sceneKey(key).default_value);
     EXPECT_EQ(values(scene), fresh) << key;
   }
 }
 
-// The words that stand in journals.
-TEST(SceneValues, TheWordForWhatIsLeftOutStaysAsItWas) {
+// Words that journals contain.
+TEST(SceneValues, WordForAnAbsentFeatureIsStable) {
   const List words{{"contact", "proxy"},
                    {"surface.sides", "auto"},
                    {"merge.redistance", "off"},
@@ -230,11 +230,11 @@ TEST(SceneValues, TheWordForWhatIsLeftOutStaysAsItWas) {
                    {"friction.slip", "none"},
                    {"magnet.fades", "none"},
                    {"device.delay", "none"}};
-  for (const auto& [key, word] : words) EXPECT_EQ(sceneKey(key).usual, word) << key;
+  for (const auto& [key, word] : words) EXPECT_EQ(sceneKey(key).default_value, word) << key;
   EXPECT_THROW(sceneKey("stifness"), std::out_of_range);
 }
 
-TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
+TEST(SceneValues, UnknownKeyListsTheKnownKeys) {
   Scene scene;
   try {
     setValue(scene, "stifness", "5");
@@ -248,7 +248,9 @@ TEST(SceneValues, AnUnknownKeyListsTheKnownOnes) {
         "surface.sides merge.redistance relief.mode relief.source relief.height relief.force "
         "relief.smoothing material.force paint.size stabiliser device.mass device.damping "
         "device.coulomb "
-        "device.encoder device.rate device.delay device");
+        "device.encoder device.rate device.delay device pins colors.slice colors.iso colors.mesh "
+        "colors.error colors.relief colors.stiffness colors.friction.static "
+        "colors.friction.dynamic colors.damping colors.roughness");
   }
 }
 

@@ -44,14 +44,14 @@ TEST(Strokes, EveryKeyIsRead) {
   EXPECT_TRUE(brush.front_only);
   EXPECT_EQ(brush.symmetry, Symmetry::y);
   EXPECT_EQ(brush.radius_per_force, 0.001);
-  EXPECT_EQ(brush.least_radius, 0.002);
-  EXPECT_EQ(brush.most_radius, 0.01);
+  EXPECT_EQ(brush.min_radius, 0.002);
+  EXPECT_EQ(brush.max_radius, 0.01);
   ASSERT_EQ(strokes[0].samples.size(), 2U);
   EXPECT_EQ(strokes[0].samples[0].position, Vec3(0.01, 0, -0.02));
   EXPECT_EQ(strokes[0].samples[0].force, 0.5);
   EXPECT_EQ(strokes[0].samples[1].t, 0.5);
   EXPECT_EQ(strokes[0].samples[1].force, 0);
-  // What is left out is as in Brush.
+  // Omitted keys have the defaults of Brush.
   Brush usual;
   usual.tool = Tool::material(MaterialChannel::static_friction);
   usual.value = 0.7;
@@ -59,7 +59,7 @@ TEST(Strokes, EveryKeyIsRead) {
   EXPECT_EQ(strokes[2].brush.erases, "relief");
 }
 
-TEST(Strokes, WrittenOnesReadBackBitForBit) {
+TEST(Strokes, ReadBackBitForBit) {
   std::vector<Stroke> strokes = parseStrokes(kWhole, "hand.json");
   strokes[0].samples[0].position = Vec3(1.0 / 3, -0.1, 1e-17);
   strokes[0].brush.radius = 0.1 / 3;
@@ -78,7 +78,7 @@ TEST(Strokes, WrittenOnesReadBackBitForBit) {
   EXPECT_EQ(parseStrokes(toJson(strokes).dump(), "again"), strokes);
 }
 
-// The paper's brush lays on colour and haptic properties at once.
+// The published brush paints colour and haptic properties at once.
 TEST(Strokes, SeveralLayersAreOneStrokeAndOneLayerIsTheOldForm) {
   const std::string several = R"({"layers": [
     {"tool": "color", "value": [0.1, 0.2, 1]}, {"value": 900, "tool": "stiffness"},
@@ -86,7 +86,7 @@ TEST(Strokes, SeveralLayersAreOneStrokeAndOneLayerIsTheOldForm) {
     "samples": [{"position": [0, 0, 1], "tip": [0.1, 0.2, 0.9]}, {"position": [0, 0, 2]}]})";
   const std::vector<Stroke> strokes = parseStrokes(textOf(several), "hand.json");
   const Brush& brush = strokes.at(0).brush;
-  EXPECT_EQ(brush.seed, Seed::segment);
+  EXPECT_EQ(brush.anchor, DabAnchor::segment);
   ASSERT_EQ(layersOf(brush).size(), 3U);
   EXPECT_EQ(layersOf(brush)[0].color, (std::array<double, 3>{0.1, 0.2, 1}));
   ASSERT_NE(layerOf(brush, Tool::material(MaterialChannel::stiffness)), nullptr);
@@ -108,11 +108,11 @@ TEST(Strokes, SeveralLayersAreOneStrokeAndOneLayerIsTheOldForm) {
           textOf(R"({"tool": "stiffness", "value": 900, "samples": [{"position": [0, 0, 0]}]})"),
           "hand.json"));
   const std::string text = toJson(one).dump(-1);
-  for (const char* key : {"layers", "seed", "tip"}) // files that did without stay as they were
+  for (const char* key : {"layers", "seed", "tip"}) // files without the key are unchanged
     EXPECT_EQ(text.find(key), std::string::npos) << key;
 }
 
-TEST(Strokes, OneWithoutSamplesIsRefusedWhereItStands) {
+TEST(Strokes, AreRejectedWithTheirPositionIfTheyHaveNoSamples) {
   const std::string whole =
       R"({"tool": "relief", "value": 1e-3, "samples": [{"position": [0, 0, 0]}]})";
   const std::string bare = R"({"tool": "relief", "value": 1e-3, "samples": []})";
@@ -129,7 +129,7 @@ TEST(Strokes, OneWithoutSamplesIsRefusedWhereItStands) {
   EXPECT_EQ(parseStrokes(list(whole), "hand.json").size(), 1U);
 }
 
-TEST(Strokes, BadOnesAreNamedByFileStrokeSampleAndKey) {
+TEST(Strokes, FaultsAreNamedByFileStrokeSampleAndKey) {
   const std::pair<std::string, std::vector<std::string>> bad[] = {
       {"{\"version\": 2, \"strokes\": []}", {"version 2", "version 1"}},
       {"{\"strokes\": []}", {"version"}},
@@ -203,11 +203,11 @@ TEST(Strokes, BadOnesAreNamedByFileStrokeSampleAndKey) {
   }
 }
 
-TEST(Strokes, NumbersThatAreNoneAreRefused) {
+TEST(Strokes, InvalidNumbersAreRejected) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<double Brush::*> numbers = {&Brush::value,        &Brush::radius,
-                                                &Brush::falloff,      &Brush::radius_per_force,
-                                                &Brush::least_radius, &Brush::most_radius};
+  const std::vector<double Brush::*> numbers = {&Brush::value,      &Brush::radius,
+                                                &Brush::falloff,    &Brush::radius_per_force,
+                                                &Brush::min_radius, &Brush::max_radius};
   for (double Brush::*value : numbers) {
     Brush brush;
     brush.tool = Tool::relief;

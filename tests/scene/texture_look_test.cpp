@@ -1,4 +1,4 @@
-// From a point to the texture under it, by the kernels of either instruction set.
+// The texture below a point, by the kernels of both instruction sets.
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -7,16 +7,16 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/fourier/texture_patches.h"
-#include "scene/paint/texture_look.h"
+#include "scene/paint/relief_surface.h"
+#include "scene/paint/texture_hit.h"
 #include "scene/paint/texture_reader.h"
 #include "support/relief_image.h"
 
 namespace patina {
 
 namespace texture_plain { // texture_look.cpp
-void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, double y, double z,
-               std::int32_t near_face, TextureFoot& foot, double* told) noexcept;
+void findTextureHit(const FaceTable& faces, const PatchTable& patches, double x, double y, double z,
+                    std::int32_t near_face, TextureHit& foot, double* told) noexcept;
 }
 
 namespace {
@@ -51,7 +51,7 @@ struct Square {
   }
 };
 
-TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
+TEST(TextureKernel, FindsFaceAndHeightByEitherKernel) {
   const Square square;
   FourierTexture texture;
   texture.omega = 2 * 3.14159265358979 / 3e-3;
@@ -59,14 +59,14 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
     texture.series.a.push_back(1e-5 / j * std::cos(j));
     texture.series.b.push_back(1e-5 / j * std::sin(j));
   }
-  texture.low = leastHeight(texture);
-  LaidTextures laid;
-  laid.library[0] = feltTexture(texture);
+  texture.low = minHeight(texture);
+  TextureMappings laid;
+  laid.library[0] = hapticTexture(texture);
   for (std::int32_t f = 0; f < 2; ++f) {
     TexturedFace face;
     face.face = f;
     for (int c = 0; c < 3; ++c)
-      face.at[static_cast<std::size_t>(c)] =
+      face.coords[static_cast<std::size_t>(c)] =
           square.mesh.corner(static_cast<std::size_t>(f), c).head<2>() + Vec2(1, 0);
     laid.faces.push_back(face);
   }
@@ -79,14 +79,15 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
     if (std::abs(from.x() - from.y()) < 5e-5) continue;
     const std::int32_t own = from.x() > from.y() ? 0 : 1, begin = i % 2;
     other += begin != own;
-    for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)}) {
-      TextureFoot foot;
+    for (const TextureKernel look :
+         {textureKernel(), TextureKernel(&texture_plain::findTextureHit)}) {
+      TextureHit foot;
       double told[2] = {7, 7};
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), begin, foot, told);
       ASSERT_EQ(foot.face, own);
       ASSERT_NEAR(static_cast<double>(foot.above), from.z(), 1e-9);
       ASSERT_NE(foot.patch, nullptr);
-      const TextureValue truth = laid.library[0]->at.at(1 + p.x());
+      const TextureValue truth = laid.library[0]->evaluator.at(1 + p.x());
       ASSERT_NEAR(told[0], truth.height, 1e-15);
       ASSERT_NEAR(told[1], truth.gradient.x(), 1e-11);
     }
@@ -94,8 +95,9 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
   EXPECT_GT(other, 500);
   const Vec3 nowhere(std::numeric_limits<double>::quiet_NaN(), 0, 0);
   for (const Vec3& p : {Vec3(kAt + Vec3(-1e-3, 5e-3, 0)), Vec3(kAt + Vec3(5e-3, 5e-3, 0)), nowhere})
-    for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)}) {
-      TextureFoot foot;
+    for (const TextureKernel look :
+         {textureKernel(), TextureKernel(&texture_plain::findTextureHit)}) {
+      TextureHit foot;
       double told[2] = {7, 7};
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot, told);
       EXPECT_EQ(foot.face, -1) << "beyond the rim, on an edge, or nowhere";
@@ -103,8 +105,8 @@ TEST(TextureLook, FindsFaceAndHeightByEitherKernel) {
     }
 }
 
-// A face without a texture, and a texture that is more than a line, are found and not looked into.
-TEST(TextureLook, LeavesOtherTexturesToThoseWhoKnowThem) {
+// A face without a texture, and a texture that is more than a line, are found but not evaluated.
+TEST(TextureKernel, LeavesOtherTexturesToTheirEvaluators) {
   const Square square;
   FourierTexture waves;
   waves.kind = TextureKind::products;
@@ -113,19 +115,19 @@ TEST(TextureLook, LeavesOtherTexturesToThoseWhoKnowThem) {
   wave.a = {1e-3};
   wave.b = {0};
   waves.products = {{wave, wave}};
-  waves.low = leastHeight(waves);
-  LaidTextures laid;
-  laid.library[0] = feltTexture(waves);
+  waves.low = minHeight(waves);
+  TextureMappings laid;
+  laid.library[0] = hapticTexture(waves);
   TexturedFace face;
   face.face = 0;
   for (int c = 0; c < 3; ++c)
-    face.at[static_cast<std::size_t>(c)] = square.mesh.corner(0, c).head<2>();
+    face.coords[static_cast<std::size_t>(c)] = square.mesh.corner(0, c).head<2>();
   laid.faces = {face};
   const TexturePatches patches(square.mesh, laid);
-  for (const TextureLook look : {textureLook(), TextureLook(&texture_plain::lookUnder)})
+  for (const TextureKernel look : {textureKernel(), TextureKernel(&texture_plain::findTextureHit)})
     for (const bool textured : {true, false}) {
       const Vec3 p = kAt + (textured ? Vec3(7e-3, 2e-3, 0) : Vec3(2e-3, 7e-3, 0));
-      TextureFoot foot;
+      TextureHit foot;
       double told[2] = {7, 7};
       look(square.faces, patches.table(), p.x(), p.y(), p.z(), 0, foot, told);
       EXPECT_EQ(foot.face, textured ? 0 : 1);
@@ -133,27 +135,28 @@ TEST(TextureLook, LeavesOtherTexturesToThoseWhoKnowThem) {
       for (const double kept : told) EXPECT_EQ(kept, 7);
       if (!textured) continue;
       EXPECT_EQ(foot.patch->texture->line.cells, nullptr);
-      EXPECT_EQ(foot.patch->texture->of, laid.library[0].get());
+      EXPECT_EQ(foot.patch->texture->texture, laid.library[0].get());
     }
 }
 
-// What the look cannot tell is left to the closest point, and what is told stays.
-TEST(TextureReader, RefusesEdgesImagesAndFacesThatAreNone) {
+// Undecided cases are left to the closest-point search, and the output stays unchanged.
+TEST(TextureReader, RejectsInvalidEdgesImagesAndFaces) {
   const Square square;
   FourierTexture texture;
   texture.omega = 2000;
   texture.series.a = {1e-4};
   texture.series.b = {0};
-  texture.low = leastHeight(texture);
-  LaidTextures laid;
-  laid.library[0] = feltTexture(texture);
+  texture.low = minHeight(texture);
+  TextureMappings laid;
+  laid.library[0] = hapticTexture(texture);
   CornerUvs uvs(2);
   for (std::int32_t f = 0; f < 2; ++f) {
     TexturedFace face;
     face.face = f;
     for (std::size_t c = 0; c < 3; ++c) {
-      face.at[c] = square.mesh.corner(static_cast<std::size_t>(f), static_cast<int>(c)).head<2>();
-      uvs[static_cast<std::size_t>(f)][c] = 10 * face.at[c];
+      face.coords[c] =
+          square.mesh.corner(static_cast<std::size_t>(f), static_cast<int>(c)).head<2>();
+      uvs[static_cast<std::size_t>(f)][c] = 10 * face.coords[c];
     }
     laid.faces.push_back(face);
   }

@@ -25,7 +25,7 @@ TEST(TiledImage, UnpaintedTexelsAreZeroAndCostNoTile) {
   EXPECT_LT(image.bytes(), 4096U);
 }
 
-TEST(TiledImage, SizesThatAreNoTilesAreRefused) {
+TEST(TiledImage, InvalidSizesAreRejected) {
   EXPECT_THROW(TiledImage(32, 64, 1), std::invalid_argument);
   EXPECT_THROW(TiledImage(64, 100, 1), std::invalid_argument);
   EXPECT_THROW(TiledImage(4128, 64, 1), std::invalid_argument);
@@ -35,8 +35,8 @@ TEST(TiledImage, SizesThatAreNoTilesAreRefused) {
   EXPECT_NO_THROW(TiledImage(64, 4096, 4));
 }
 
-// Every texel has a place of its own.
-TEST(TiledImage, TexelsReadBackWhereTheyWereWritten) {
+// Every texel has its own address.
+TEST(TiledImage, TexelsReadBackAtTheirPositions) {
   TiledImage image(96, 64, 3);
   const auto value = [](int i, int j, int c) {
     return static_cast<float>(1 + c + 3 * (i + 96 * j));
@@ -49,13 +49,13 @@ TEST(TiledImage, TexelsReadBackWhereTheyWereWritten) {
       for (int c = 0; c < 3; ++c) ASSERT_EQ(image.at(i, j, c), value(i, j, c)) << i << " " << j;
 }
 
-// Even where the copy is gone already: its last reader may be on another thread.
-TEST(TiledImage, WhatWasPublishedIsNeverWrittenAgain) {
+// This holds even if the copy is gone: its last reader may be on another thread.
+TEST(TiledImage, PublishedTilesAreImmutable) {
   TiledImage image(64, 64, 1);
   set(image, 5, 5, 0, 1);
   const float* const own = image.tile(0);
   set(image, 6, 5, 0, 2);
-  EXPECT_EQ(image.tile(0), own); // nobody has seen it
+  EXPECT_EQ(image.tile(0), own); // not published yet
   auto seen = std::make_unique<const TiledImage>(image.published());
   std::weak_ptr<TiledImage::Tile> tile = seen->sharedTile(0);
   const auto kept = tile.lock();
@@ -65,7 +65,7 @@ TEST(TiledImage, WhatWasPublishedIsNeverWrittenAgain) {
   EXPECT_EQ((*kept)[image.offsetOf(7, 5)], 0);
 }
 
-TEST(TiledImage, APublishedTileIsCopiedThoughNobodyHoldsItAnyMore) {
+TEST(TiledImage, PublishedTileIsCopiedEvenIfReleased) {
   TiledImage image(64, 64, 1);
   set(image, 5, 5, 0, 1);
   std::weak_ptr<TiledImage::Tile> tile = image.sharedTile(0);
@@ -74,7 +74,7 @@ TEST(TiledImage, APublishedTileIsCopiedThoughNobodyHoldsItAnyMore) {
   EXPECT_TRUE(tile.expired()); // replaced, not written
 }
 
-// As a picture is laid on: for the thread sanitizer.
+// Threads write like LayImage does; for the thread sanitizer.
 TEST(TiledImage, ThreadsWriteDifferentTilesAtOnce) {
   TiledImage before(256, 256, 1);
   set(before, 0, 0, 0, 7);
@@ -102,14 +102,14 @@ TEST(TiledImage, CopiesShareTilesUntilOneIsWritten) {
   EXPECT_EQ(image.at(5, 5, 0), 1.5f);
   EXPECT_EQ(copy.at(5, 5, 0), 9);
   EXPECT_NE(copy.sharedTile(0), image.sharedTile(0));
-  EXPECT_EQ(copy.sharedTile(3), image.sharedTile(3)); // the other one still is
+  EXPECT_EQ(copy.sharedTile(3), image.sharedTile(3)); // the other tile is shared
   const float* own = copy.writable(0);
   EXPECT_EQ(copy.writable(0), own); // a tile of one owner is written in place
 }
 
 TEST(TiledImage, SamplesAreBilinearBetweenCentresAndClampedAtTheBorder) {
   TiledImage image(128, 64, 1);
-  // Affine in the texel's centre: bilinear reads it without error.
+  // The image is affine in the texel centres, so bilinear interpolation is exact.
   const auto plane = [](double u, double v) { return 3 - 2 * u + 5 * v; };
   for (int j = 0; j < 64; ++j)
     for (int i = 0; i < 128; ++i)
@@ -124,7 +124,7 @@ TEST(TiledImage, SamplesAreBilinearBetweenCentresAndClampedAtTheBorder) {
   EXPECT_EQ(image.sample(1, 1, 0), static_cast<double>(image.at(127, 63, 0)));
 }
 
-TEST(TiledImage, SameIsBitwiseAndKnowsThatAbsentIsZero) {
+TEST(TiledImage, SameIsBitwiseAndTreatsAbsentAsZero) {
   TiledImage a(64, 64, 1), b(64, 64, 1);
   b.writable(2);
   EXPECT_TRUE(same(a, b));

@@ -16,10 +16,10 @@ constexpr double kStored = 0.5 * kLoopStiffness * kDepth * kDepth;
 
 const std::vector<Vec3> kAxes = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
 
-// Of loops about `centre`, in the planes across each of `axes`, after a lap to settle in.
+// Work of loops about `centre`, in the planes across each of `axes`, after one lap to settle.
 struct Loops {
   double worst = 0;   // the largest |work| [J]
-  double created = 0; // the most that was given to the hand [J]
+  double created = 0; // largest energy given to the hand [J]
 };
 Loops worstLoop(const HapticSnapshot& snapshot, const Vec3& centre, const std::vector<Vec3>& axes) {
   Loops loops;
@@ -29,7 +29,7 @@ Loops worstLoop(const HapticSnapshot& snapshot, const Vec3& centre, const std::v
     ContactMemory memory;
     double work = 0;
     Vec3 last_force = Vec3::Zero(), last_tip = Vec3::Zero();
-    // A lap to settle in: contact that remembers must come round to where it began.
+    // One lap settles the contact: its memory must be the same after each lap.
     for (int i = -count; i <= count; ++i) {
       const double angle = 2 * std::numbers::pi * i / count;
       const Vec3 tip = centre + kLoop * (std::cos(angle) * u + std::sin(angle) * v);
@@ -49,7 +49,7 @@ Loops worstLoop(const HapticSnapshot& snapshot, const Vec3& centre, const std::v
 struct Mode {
   const char* name;
   void (*set)(HapticProperties&);
-  double depth; // of the loops' centre below the surface [m]; negative is above it
+  double depth; // depth of the loops' centre below the surface [m]; negative is above it
 };
 
 constexpr std::array<Mode, 4> kModes = {{
@@ -69,14 +69,14 @@ struct LoopEnergy {
 
 LoopEnergy onASphere(const Mode& mode, Sampler sampler, int cells) {
   const double R = 0.03;
-  // Bands of one thickness in metres, whatever the voxel.
+  // The bands have one thickness in metres for every voxel.
   const double voxel = 2 * R / (cells - 16.0);
   const double band = std::max(8.0, std::ceil(6e-3 / voxel) + 3);
   const int side = 2 * static_cast<int>(std::ceil(R / voxel + band + 1));
   const Field sphere = cubeField([=](const Vec3& p) { return p.norm() - R; }, voxel, side, band);
   Scene scene = sceneOf(kLoopStiffness, sampler);
   mode.set(scene.haptics);
-  // Trilinear values have a bump in every cell: the paper's own contact point does not follow them.
+  // Trilinear values have a bump in every cell: the papers' contact point does not follow them.
   if (sampler == Sampler::kim) scene.haptics.contact = HapticProperties::Contact::ray;
   const auto snapshot = compileStages(scene, sphere);
   LoopEnergy energy;
@@ -92,17 +92,17 @@ LoopEnergy onASphere(const Mode& mode, Sampler sampler, int cells) {
   return energy;
 }
 
-TEST(ClosedLoopEnergy, OfASmoothSurfaceIsSmallAndFallsWithTheSquareOfTheVoxel) {
+TEST(ClosedLoopEnergy, IsSmallOnSmoothSurfacesAndFallsWithTheSquareOfTheVoxel) {
   for (const Sampler sampler : {Sampler::kim, Sampler::high}) {
     for (const Mode& mode : kModes) {
       const LoopEnergy coarse = onASphere(mode, sampler, 75);
       const LoopEnergy fine = onASphere(mode, sampler, 150);
-      // The voxels, not the cells: the band takes 16 of them.
+      // The voxels decide, not the cells: the band takes 16 of them.
       const double order = std::log(coarse.rms / fine.rms) / std::log((150 - 16) / (75 - 16.0));
       std::printf("%-10s %s: %.2g J at 75, %.2g J at 150, order %.2f\n", mode.name,
                   std::string(name(sampler)).c_str(), coarse.worst, fine.worst, order);
       EXPECT_LE(fine.worst, 3e-6) << mode.name;
-      // 2, and what 24 places scatter; below it is what a tick leaves undone, at any voxel.
+      // 2, less the scatter of 24 places; below it is the unfinished part of a tick, at any voxel.
       if (fine.worst > 5e-7) {
         EXPECT_GE(order, 1.9) << mode.name;
       }
@@ -110,9 +110,9 @@ TEST(ClosedLoopEnergy, OfASmoothSurfaceIsSmallAndFallsWithTheSquareOfTheVoxel) {
   }
 }
 
-// About the edge of a box, `beside` the bisector of its faces, where the contact point may pass
-// from one to the other: that takes energy, and never gives any (P11, T-P4).
-TEST(ClosedLoopEnergy, AboutACreaseNothingIsGiven) {
+// The path runs about the edge of a box, `beside` the bisector of its faces, where the contact
+// point may pass from one face to the other: that takes energy and never gives any (P11, T-P4).
+TEST(ClosedLoopEnergy, IsNeverGivenAboutACrease) {
   const Vec3 half(0.03, 0.025, 0.02);
   const std::vector<Vec3> axes = {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0.3, 0.5, 0.8)};
   for (const int cells : {75, 150}) {
@@ -124,7 +124,7 @@ TEST(ClosedLoopEnergy, AboutACreaseNothingIsGiven) {
     for (const Mode& mode : kModes) {
       Scene scene = sceneOf(kLoopStiffness);
       mode.set(scene.haptics);
-      if (scene.haptics.magnet) continue; // out of contact its pull is the field's own direction
+      if (scene.haptics.magnet) continue; // it pulls out of contact
       const auto snapshot = compileStages(scene, box);
       Loops most;
       for (const double along : {-3e-3, 0.37e-3, 2.1e-3})

@@ -1,4 +1,4 @@
-// The contact list of MATH 2.8, each with its expected behaviour.
+// The contact list of MATH 2.8, each case with its expected behaviour.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -7,8 +7,9 @@
 #include <limits>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/stages/limit_stage.h"
+#include "haptics/law/limit_stage.h"
 #include "support/constants.h"
+#include "support/longer.h"
 #include "support/simulated_device.h"
 
 namespace patina {
@@ -34,7 +35,7 @@ struct Loop {
   double mass = 0.1, damping = 0.5, press = 1;
   int delay = 0;
   double period = kPeriod;
-  double offset = 1e-4; // of the start from the equilibrium [m]
+  double offset = 1e-4; // distance of the start from the equilibrium [m]
 
   // Ratio of the swing in the last tenth to that in the second tenth.
   double growth(const HapticSnapshot& snapshot, double stiffness, int ticks) const {
@@ -106,7 +107,7 @@ TEST(ContactExtremes, DelayLowersTheBoundaryAsPredicted) {
   }
 }
 
-TEST(ContactExtremes, WithoutDeviceDampingTheForceStaysWithinTheLimit) {
+TEST(ContactExtremes, ForceStaysWithinTheLimitWithoutDeviceDamping) {
   Loop loop;
   loop.damping = 0;
   EXPECT_GT(loop.growth(*compileStages(wallScene(1000), wall()), 1000, 20000), 1.1);
@@ -208,13 +209,7 @@ TEST(ContactExtremes, TeleportsOf50MmStayWithinTheLimit) {
   }
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kAnyTips = 1000000;
-#else
-constexpr int kAnyTips = 10000000;
-#endif
-
-// Force finite and within the limit whatever the tip and the period.
+// The force is finite and within the limit for any tip and period.
 TEST(ContactExtremes, AnyTipGivesAFiniteForceWithinTheLimit) {
   const Field plate = plateField();
   Scene scene = withFriction(wallScene(500), 0.5, 0.3, 0.5);
@@ -222,7 +217,7 @@ TEST(ContactExtremes, AnyTipGivesAFiniteForceWithinTheLimit) {
   scene.haptics.tip_radius = 0.1e-3;
   scene.haptics.friction->slip = Friction::SlipDirection::displacement;
   const auto snapshot = compileStages(scene, plate);
-  const int count = kAnyTips;
+  const int count = static_cast<int>(test::longer(1000000));
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> coordinate(-5e-3, 5e-3);
   ContactMemory memory;
@@ -230,8 +225,9 @@ TEST(ContactExtremes, AnyTipGivesAFiniteForceWithinTheLimit) {
   Vec3 tip = Vec3::Zero();
   int touching = 0, pressed = 0;
   for (int i = 0; i < count; ++i) {
-    if (i % 5000 == 4999) { // it must have survived that, not be silent
-      // Round the rim and back: a tip that went through the plate is still held on the other side.
+    if (i % 5000 == 4999) { // contact must still work after such tips
+      // A path round the rim and back: a tip that went through the plate is still held on the other
+      // side.
       for (const Vec3& corner : {Vec3(8e-3, 0, 0), Vec3(8e-3, 0, 2e-3), Vec3(0, 0, 2e-3)})
         glide(*snapshot, memory, corner, 0.05e-3);
       for (int k = 0; k < 400; ++k) tick(*snapshot, memory, Vec3(0, 0, 1e-3), kPeriod);
@@ -277,8 +273,8 @@ TEST(ContactExtremes, AnyTipGivesAFiniteForceWithinTheLimit) {
   EXPECT_GT(touching, count / 20);
 }
 
-// One tick without duration, or a tip set beyond all bounds, must not stay in the velocity.
-TEST(ContactExtremes, ForgetsAVelocityThatCannotBe) {
+// A tick without duration, or a tip set beyond all bounds, must not leave a velocity.
+TEST(ContactExtremes, ForgetsAnImpossibleVelocity) {
   Scene scene = wallScene(500);
   scene.haptics.damping = 2;
   const auto snapshot = compileStages(scene, wall());

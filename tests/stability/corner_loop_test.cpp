@@ -1,5 +1,5 @@
-// T-P5: a mass pressed into corners and grooves and onto edges, where contact has more than one
-// normal or hardly one.
+// T-P5: a mass pressed into corners and grooves and onto edges, where contact has several normals
+// or an unstable one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/devices/simulation.h"
+#include "haptics/simulation/simulation.h"
 #include "support/constants.h"
 
 namespace patina {
@@ -18,7 +18,7 @@ using test::kPeriod;
 
 constexpr double kPress = 2; // [N]
 
-// Free where every plane is behind: an inner corner of these outward normals at the origin.
+// The free space is behind every plane: an inner corner of these outward normals at the origin.
 Field innerCorner(const std::vector<Vec3>& normals, double voxel = 0.4e-3) {
   return cubeField(
       [=](const Vec3& p) {
@@ -108,7 +108,7 @@ TEST(CornerLoop, RestsAtAnyStiffnessWithTheAutomaticStabiliser) {
   }
 }
 
-// Two walls hold the tip across, and their common line turns: it holds along it as a bowl does.
+// Two walls hold the tip across, and their common line curves: it holds along it as a bowl does.
 TEST(CornerLoop, RestsInAGrooveThatRunsRoundTheTip) {
   for (const double half_angle : {30.0, 60.0})
     for (const double radius : {2e-3, 10e-3}) {
@@ -136,7 +136,7 @@ TEST(CornerLoop, RestsInAGrooveThatRunsRoundTheTip) {
 }
 
 // A groove along the grid, pressed where one wall of its rounded bottom holds the tip and two are
-// about to: each is as stiff as a plane, so that what a plane bears is enough.
+// about to: each is as stiff as a plane, so that a plane's limit applies.
 TEST(CornerLoop, RestsInTheMiddleOfAGrooveAlongTheGrid) {
   for (const double half_angle : {15.0, 45.0, 80.0}) {
     const double a = half_angle * std::numbers::pi / 180;
@@ -158,7 +158,7 @@ TEST(CornerLoop, RestsInTheMiddleOfAGrooveAlongTheGrid) {
   }
 }
 
-// The disturbances of a plane's loop, where contact has more than one normal.
+// The disturbances of a plane's loop, at contact with several normals.
 TEST(CornerLoop, RestsAfterAnImpactUnderJitterAMissedTickAndATeleport) {
   for (const Corner& corner : corners()) {
     const Field field = innerCorner(corner.normals);
@@ -175,11 +175,11 @@ TEST(CornerLoop, RestsAfterAnImpactUnderJitterAMissedTickAndATeleport) {
       const std::string what = corner.name + (" at " + std::to_string(stiffness));
       Progress progress;
       expectRest(simulate(*snapshot, impact, progress), what + " impact", 40e-3);
-      // A third wall of the sampled bottom holds along it too, with next to no load to be damped
-      // by: at twice the nominal period that trembles by some nm. 1.5e-6 measured.
+      // A third wall of the sampled bottom holds along it too, with almost no load and so almost no
+      // damping: at twice the nominal period the tip trembles by some nm. 1.5e-6 measured.
       expectRest(simulate(*snapshot, jitter, progress), what + " jitter", 20e-3, 5e-6);
       expectRest(simulate(*snapshot, missed, progress), what + " missed", 20e-3);
-      // Out of contact in one tick is a fault, and it lets the hand back in.
+      // Leaving contact in one tick is a fault, and it lets the hand in again.
       const SimulationReport back = simulate(*snapshot, teleport, progress);
       EXPECT_LE(back.rms_velocity, 1e-6) << what;
       EXPECT_TRUE(back.touches_late) << what;
@@ -211,7 +211,8 @@ TEST(CornerLoop, DoesNotDrift) {
 }
 
 // On a small ball and on an edge the tip stands only by friction (the frictionless equilibrium is
-// unstable: K d / (r - d) against nothing). Without it, it leaves, bounded and without a fault.
+// unstable: K d / (r - d) without a restoring force). Without friction it leaves, bounded and
+// without a fault.
 TEST(CornerLoop, StandsOnASmallBallAndOnAnEdgeByFrictionAlone) {
   const double r = 2e-3, stiffness = 1000, press = 0.15 * stiffness * r;
   const Field ball = cubeField([=](const Vec3& p) { return p.norm() - r; }, 0.1e-3, 64);

@@ -1,4 +1,4 @@
-// The field list of MATH 2.8, each with its expected behaviour.
+// The field list of MATH 2.8, each case with its expected behaviour.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/error.h"
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "field/sampling/field_sampler.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
@@ -93,7 +93,7 @@ double worstDistance(const SurfaceField& field, const TriangleMesh& mesh) {
   forNodes(field, [&](const Vec3& p, float phi) {
     const double d = tree.closestPoint(p).distance / field.grid.voxel;
     const double stored = std::abs(static_cast<double>(phi));
-    worst = std::max(worst, stored < kBeyondBand ? std::abs(stored - d) : field.band - d);
+    worst = std::max(worst, stored < kBackground ? std::abs(stored - d) : field.band - d);
   });
   return worst;
 }
@@ -110,7 +110,7 @@ void expectFinite(const FieldSampler& sampler, const Vec3& p) {
   EXPECT_TRUE(sample.gradient.allFinite()) << p.transpose();
 }
 
-TEST(FieldExtremes, EmptyMeshIsAnErrorThatSaysSo) {
+TEST(FieldExtremes, EmptyMeshIsANamedError) {
   EXPECT_NE(failure(TriangleMesh(), cells(60)).find("no triangle"), std::string::npos);
 }
 
@@ -122,7 +122,7 @@ TEST(FieldExtremes, MeshOfNothingButDefectsIsAnError) {
   EXPECT_NE(failure(mesh, cells(60)).find("no triangle"), std::string::npos);
 }
 
-// Nodes with a negative distance, and how many of these lie in front of the plane through `on`.
+// Counts nodes with a negative distance, and those of them in front of the plane through `on`.
 std::array<std::size_t, 2> insideAndInFront(const SurfaceField& field, const Vec3& on,
                                             const Vec3& normal) {
   std::array<std::size_t, 2> count{};
@@ -136,16 +136,16 @@ std::array<std::size_t, 2> insideAndInFront(const SurfaceField& field, const Vec
   return count;
 }
 
-TEST(FieldExtremes, OneTriangleHasExactDistancesAndABack) {
+TEST(FieldExtremes, OneTriangleHasExactDistancesAndABackSide) {
   const TriangleMesh mesh = oneTriangle();
   const auto field = built(mesh, cells(60)).field;
   const Vec3 a = mesh.corner(0, 0);
   const Vec3 normal = (mesh.corner(0, 1) - a).cross(mesh.corner(0, 2) - a).normalized();
   const TriangleTree tree(mesh);
   double worst = 0;
-  std::size_t stored = 0; // in front; behind there is the plate's back
+  std::size_t stored = 0; // in front; behind is the plate's back
   forNodes(*field, [&](const Vec3& p, float phi) {
-    if (normal.dot(p - a) < 0 || !(phi < kBeyondBand)) return;
+    if (normal.dot(p - a) < 0 || !(phi < kBackground)) return;
     const double d = tree.closestPoint(p).distance / field->grid.voxel;
     worst = std::max(worst, std::abs(static_cast<double>(phi) - d)), ++stored;
   });
@@ -167,12 +167,12 @@ TEST(FieldExtremes, ZeroAreaFacesAreDroppedAndCounted) {
   mesh.triangles.push_back({3, 3, 5});
   const BuiltField clean = built(ball, cells(60)), dirty = built(mesh, cells(60));
   EXPECT_EQ(dirty.report.dropped_triangles, 2U);
-  ASSERT_EQ(clean.field->top, dirty.field->top);
+  ASSERT_EQ(clean.field->block_index, dirty.field->block_index);
   for (std::size_t slot = 0; slot < clean.field->blockCount(); ++slot) {
     ASSERT_EQ(clean.field->distance[slot]->phi(), dirty.field->distance[slot]->phi());
     for (std::size_t n = 0; n < kBlockNodes; ++n) {
       const std::int32_t face = clean.field->face[slot]->at(n);
-      ASSERT_EQ(dirty.field->face[slot]->at(n), face < 0 ? -1 : face + 1); // as given
+      ASSERT_EQ(dirty.field->face[slot]->at(n), face < 0 ? -1 : face + 1); // numbering of the input
     }
   }
 }
@@ -193,7 +193,7 @@ TEST(FieldExtremes, NanAndInfiniteVerticesCostOnlyTheirFaces) {
   }
 }
 
-TEST(FieldExtremes, AMillionSizesAwayWorksAsAtTheOrigin) {
+TEST(FieldExtremes, WorksAMillionSizesAwayAsAtTheOrigin) {
   const TriangleMesh mesh = torus(0.04, 0.015, 60, 30);
   const Vec3 away(0.1e6, -0.1e6, 0.1e6);
   const auto here = built(mesh, cells(80)).field;
@@ -225,7 +225,7 @@ TEST(FieldExtremes, BoxOfOneToAThousandIsExactAlongItsLength) {
   }
 }
 
-// Two sides without an inside between them; an offset surface is still there to be felt.
+// Two sheets enclose no inside; an offset surface still gives contact.
 TEST(FieldExtremes, PlateThinnerThanAVoxel) {
   const Vec3 size(0.05, 0.05, 2e-4);
   const TriangleMesh mesh = box(size, 4);
@@ -278,7 +278,7 @@ TEST(FieldExtremes, SmallestAndLargeGrids) {
   }
 }
 
-TEST(FieldExtremes, OpenMeshIsExactAndSaysWhatIsAmbiguous) {
+TEST(FieldExtremes, OpenMeshIsExactAndReportsAmbiguousSigns) {
   TriangleMesh mesh = icosphere(0.05, 12);
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     return mesh.positions[static_cast<std::size_t>(t[0])].z() > 0.03;
@@ -292,21 +292,21 @@ TEST(FieldExtremes, OpenMeshIsExactAndSaysWhatIsAmbiguous) {
   EXPECT_GT(sampler.at(Vec3(0, 0, 0.048)).phi, 0); // above its mouth
 }
 
-TEST(FieldExtremes, AFlatSheetIsInsideOnlyBehindItsFront) {
+TEST(FieldExtremes, FlatSheetIsInsideOnlyBehindItsFront) {
   const BuiltField flat = built(sheet(0.1, 0.1, 10), cells(60));
   const auto [inside, in_front] = insideAndInFront(*flat.field, Vec3::Zero(), Vec3::UnitZ());
   EXPECT_GT(inside, 100U);
   EXPECT_EQ(in_front, 0U);
 }
 
-TEST(FieldExtremes, MeshWithItsOwnInverseIsTheMesh) {
+TEST(FieldExtremes, MeshWithItsOwnInverseEqualsTheMesh) {
   const TriangleMesh mesh = torus(0.04, 0.015, 60, 30);
   TriangleMesh inverse = mesh;
   for (Triangle& t : inverse.triangles) std::swap(t[1], t[2]);
   const auto once = built(mesh, cells(80)).field;
   for (const TriangleMesh& both : {joined(mesh, inverse), joined(inverse, mesh), inverse}) {
     const auto field = built(both, cells(80)).field;
-    ASSERT_EQ(once->top, field->top);
+    ASSERT_EQ(once->block_index, field->block_index);
     for (std::size_t slot = 0; slot < once->blockCount(); ++slot) {
       const auto a = once->distance[slot]->phi(), b = field->distance[slot]->phi();
       for (std::size_t n = 0; n < kBlockNodes; ++n) ASSERT_NEAR(a[n], b[n], 1e-4);
@@ -321,7 +321,7 @@ class TipOfBall : public testing::TestWithParam<Sampler> {
   FieldSampler sampler_{*field_, GetParam()};
 };
 
-TEST_P(TipOfBall, OutsideTheGridIsOutsideWithALowerBound) {
+TEST_P(TipOfBall, IsOutsideWithALowerBoundBeyondTheGrid) {
   for (const Vec3& p : {Vec3(0.2, 0, 0), Vec3(-3, 5, 1), Vec3(0, 0, 1e9), Vec3(1e300, 0, -1e300)}) {
     const GridSample sample = sampler_.at(p);
     EXPECT_EQ(sample.region, FieldRegion::outside);
@@ -332,11 +332,11 @@ TEST_P(TipOfBall, OutsideTheGridIsOutsideWithALowerBound) {
   }
   EXPECT_GT(sampler_.at(Vec3(kInfinity, 0, 0)).phi, 0);
   const GridSample nowhere = sampler_.at(Vec3(0, kNan, 0));
-  EXPECT_EQ(nowhere.region, FieldRegion::nowhere);
+  EXPECT_EQ(nowhere.region, FieldRegion::invalid);
   EXPECT_EQ(nowhere.phi, kInfinity);
 }
 
-TEST_P(TipOfBall, OnNodesEdgesAndFacesIsContinuous) {
+TEST_P(TipOfBall, IsContinuousOnNodesEdgesAndFaces) {
   std::mt19937 random(3);
   std::uniform_int_distribution<int> index(1, 78);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -345,7 +345,7 @@ TEST_P(TipOfBall, OnNodesEdgesAndFacesIsContinuous) {
     Vec3 q(index(random), index(random), index(random));
     const float stored = test::phiAt(*field_, static_cast<int>(q[0]), static_cast<int>(q[1]),
                                      static_cast<int>(q[2]));
-    if (std::abs(stored) > 4) continue; // away from where coarse values take over
+    if (std::abs(stored) > 4) continue; // coarse values replace them farther out
     ++in_band;
     EXPECT_NEAR(sampler_.atGrid(q).phi, stored, 1e-5); // on a node
     const int free = n % 3;
@@ -364,16 +364,16 @@ TEST_P(TipOfBall, OnNodesEdgesAndFacesIsContinuous) {
   EXPECT_GT(in_band, 500);
 }
 
-TEST_P(TipOfBall, AtTheMedialAxisIsFinite) {
+TEST_P(TipOfBall, IsFiniteAtTheMedialAxis) {
   const FieldSampler sampler(*field_, GetParam());
   const GridSample centre = sampler.at(Vec3::Zero());
   EXPECT_TRUE(centre.gradient.allFinite());
   EXPECT_LT(centre.gradient.norm(), 0.2); // no direction is better than another
-  // Nor where a coarse node lies at the centre: that of 80 cells lies on a block's corner.
+  // The same holds if a coarse node lies at the centre: that of 80 cells lies on a block's corner.
   const Vec3 q = field_->grid.toGrid(Vec3::Zero()) / kBlockSide;
   EXPECT_LT((q - Vec3(q.array().round())).norm(), 1e-6);
   for (const Vec3& p : {Vec3(0.3, 0, 0), Vec3(0, -0.3, 0), Vec3(0.2, 0.2, -0.2)}) {
-    const Vec3 g = sampler.at(kRadius * p).gradient; // and off the axis there is one
+    const Vec3 g = sampler.at(kRadius * p).gradient; // off the axis there is a direction
     EXPECT_GT(g.dot(p.normalized()), 0.7);
   }
   EXPECT_LT(centre.phi, -8 * field_->grid.voxel);
@@ -383,7 +383,7 @@ TEST_P(TipOfBall, AtTheMedialAxisIsFinite) {
   }
 }
 
-TEST_P(TipOfBall, AtTheMedialAxisOfAPlateIsFinite) {
+TEST_P(TipOfBall, IsFiniteAtTheMedialAxisOfAPlate) {
   const auto field = built(box(Vec3(0.05, 0.05, 0.004), 2), voxels(1e-3)).field;
   const FieldSampler sampler(*field, GetParam());
   for (int i = -50; i <= 50; ++i) {

@@ -1,4 +1,4 @@
-// The friction list of MATH 2.8, each with its expected behaviour.
+// The friction list of MATH 2.8, each case with its expected behaviour.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -29,7 +29,7 @@ TEST(FrictionExtremes, VeryRoughSurfaceIsASpring) {
   }
 }
 
-// 2.4: no step if the coefficient grows; K (|p - c| - mu_d d) if it shrinks below what is held.
+// 2.4: no step if the coefficient grows; K (|p - c| - mu_d d) if it shrinks below the held force.
 TEST(FrictionExtremes, StepOfTheCoefficientWhileStuck) {
   const Field plane = planeField();
   const auto rough = compileStages(withFriction(sceneOf(500), 0.5, 0.5), plane);
@@ -74,8 +74,9 @@ TEST(FrictionExtremes, DepthOfANanometre) {
   }
 }
 
-// To the edge of a box and on past it, 1 mm deep: the contact point stays on the face where it is
-// until the tip has left through the other, with what friction adds, and no fault.
+// The tip moves to the edge of a box and on past it, 1 mm deep: the contact point stays on the face
+// where it is until the tip has left through the other, up to the share of friction, and without a
+// fault.
 TEST(FrictionExtremes, SlidesOverACrease) {
   const Vec3 half(8e-3, 8e-3, 8e-3);
   const Field box = cubeField([&](const Vec3& p) { return boxDistance(p, half); }, 0.25e-3, 96);
@@ -105,7 +106,7 @@ TEST(FrictionExtremes, SlidesOverACrease) {
   }
 }
 
-// Off the rim of a plate: the force ends, the stuck point is forgotten, nothing is left behind.
+// Off the rim of a plate: the force ends, the stuck point is forgotten, and no state remains.
 TEST(FrictionExtremes, SlidesOffAnEdge) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.3), plateField(2e-3));
   ContactMemory memory;
@@ -118,7 +119,7 @@ TEST(FrictionExtremes, SlidesOffAnEdge) {
     EXPECT_LE(contact.force.norm(), 0.2) << x;
   }
   EXPECT_FALSE(contact.touching);
-  EXPECT_FALSE(memory.friction.grip);
+  EXPECT_FALSE(memory.friction.stick);
 }
 
 } // namespace

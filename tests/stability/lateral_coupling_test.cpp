@@ -1,30 +1,30 @@
-// The lateral coupling by itself: what it yields, gives and costs, and where it is absent.
+// The lateral coupling by itself: its compliance, energy and cost, and where it is absent.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include <gtest/gtest.h>
 
+#include "haptics/law/coupling_stage.h"
 #include "haptics/stability/stability_map.h"
-#include "haptics/stages/coupling_stage.h"
 #include "stability/texture_support.h"
 #include "support/least_time.h"
 
 namespace patina {
 namespace {
 
-// The force with everything at rest, `depth` beneath the relief's mean.
+// Returns the force at rest, `depth` beneath the relief's mean.
 Contact restingAt(const HapticSnapshot& snapshot, ContactMemory& memory, const Vec3& tip) {
   Contact contact = glide(snapshot, memory, tip, 5e-6);
   for (int i = 0; i < 200; ++i) contact = tick(snapshot, memory, tip, 1e-3);
   return contact;
 }
 
-TEST(LateralCoupling, AValleyIsTheTextureAndTheCouplingInSeries) {
+TEST(LateralCoupling, ValleyIsTheTextureAndTheCouplingInSeries) {
   for (const double amplitude : {50e-6, 100e-6})
     for (const double stiffness : {300.0, 2000.0}) {
       const Scene scene = automatic(stiffness);
-      const FeltObject object = waves(amplitude);
+      const HapticObject object = waves(amplitude);
       const auto snapshot = compileStages(scene, fineSlab().field, std::span(&object, 1));
       ASSERT_TRUE(snapshot->stabilisers.lateral);
       const double k_l = snapshot->stabilisers.lateral->stiffness;
@@ -42,11 +42,11 @@ TEST(LateralCoupling, AValleyIsTheTextureAndTheCouplingInSeries) {
     }
 }
 
-// At any place and depth, where it is at rest; what it falls by in a hop frees the tip.
+// Compares forces at rest at any place and depth; a jump lowers the force, which frees the tip.
 TEST(LateralCoupling, IsNowhereStifferThanItsSpring) {
   for (const double amplitude : {50e-6, 100e-6}) {
     const Scene scene = automatic(500);
-    const FeltObject object = waves(amplitude);
+    const HapticObject object = waves(amplitude);
     const auto snapshot = compileStages(scene, fineSlab().field, std::span(&object, 1));
     const double k_l = snapshot->stabilisers.lateral->stiffness;
     for (const double depth : {1e-3, 3e-3, 6e-3}) {
@@ -64,7 +64,8 @@ TEST(LateralCoupling, IsNowhereStifferThanItsSpring) {
   }
 }
 
-// Work given to the hand over the second of two rounds, when what is stored has come round too.
+// Returns the work given to the hand over the second of two rounds, when the stored energy is
+// periodic too.
 double workOfLoop(const HapticSnapshot& snapshot, const std::vector<Vec3>& corners, double step) {
   ContactMemory memory;
   double work = 0;
@@ -87,7 +88,7 @@ double workOfLoop(const HapticSnapshot& snapshot, const std::vector<Vec3>& corne
   return work;
 }
 
-TEST(LateralCoupling, NoLoopOverTextureGivesEnergy) {
+TEST(LateralCoupling, LoopOverTextureGivesNoEnergy) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> aside(-2e-3, 2e-3), deep(-5e-3, 0.3e-3);
   double most = -1, least = 1;
@@ -107,10 +108,10 @@ TEST(LateralCoupling, NoLoopOverTextureGivesEnergy) {
   std::printf("texture: %.3g ... %.3g J given a loop\n", least, most);
 }
 
-// Without hops nothing is lost but to the damper, in proportion to the speed.
-TEST(LateralCoupling, ASlowLoopWithoutHopsLosesNothing) {
+// A loop without jumps loses energy only to the damper, in proportion to the speed.
+TEST(LateralCoupling, SlowLoopWithoutJumpsLosesNothing) {
   const Scene scene = automatic(500);
-  const FeltObject object = waves(40e-6);
+  const HapticObject object = waves(40e-6);
   const auto snapshot = compileStages(scene, fineSlab().field, std::span(&object, 1));
   const std::vector<Vec3> corners{Vec3(1.3e-3, 1e-4, -2e-3), Vec3(1.3e-3, 1e-4, -1.2e-3),
                                   Vec3(0, 1e-4, -1.2e-3), Vec3(0, 1e-4, -2e-3)};
@@ -120,12 +121,12 @@ TEST(LateralCoupling, ASlowLoopWithoutHopsLosesNothing) {
   EXPECT_NEAR(slow / quick, 0.25, 0.01);
 }
 
-// 100 um under 2 N have more than one rest within the coupling's reach, and the tip takes the next
-// one: no fault, and nothing that friction would call a slip of the hand's.
-TEST(LateralCoupling, HopsAreSaidAndAreNoFault) {
+// 100 um under 2 N have several equilibria within the coupling's range, and the tip takes the next
+// one: no fault, and no slip in the sense of friction.
+TEST(LateralCoupling, ReportsJumpsWithoutFault) {
   for (const double amplitude : {50e-6, 100e-6}) {
     const Scene scene = withFriction(automatic(500), 0.3, 0.25);
-    const FeltObject object = waves(amplitude);
+    const HapticObject object = waves(amplitude);
     const auto snapshot = compileStages(scene, fineSlab().field, std::span(&object, 1));
     ContactMemory memory;
     const double depth = amplitude < 75e-6 ? 2e-3 : 4e-3;
@@ -150,7 +151,7 @@ void expectSameForces(const HapticSnapshot& a, const HapticSnapshot& b, double d
                    depth * std::sin(0.01 * i));
     const Contact left = tick(a, memory_a, tip, 1e-3), right = tick(b, memory_b, tip, 1e-3);
     ASSERT_EQ(left.force, right.force) << i;
-    ASSERT_EQ(left.aside, Vec3::Zero());
+    ASSERT_EQ(left.lateral_offset, Vec3::Zero());
   }
 }
 
@@ -159,10 +160,10 @@ Scene upTo(double force_limit, Scene scene) {
   return scene;
 }
 
-// A texture that the loop bears under all that the servo gives has no such stage, and costs and
-// feels what it did.
+// A texture that the loop can render at full force needs no such stage; its forces and cost are
+// unchanged.
 TEST(LateralCoupling, IsAbsentWhereTheTextureIsGentle) {
-  const FeltObject gentle = waves(10e-6), stiff = waves(50e-6);
+  const HapticObject gentle = waves(10e-6), stiff = waves(50e-6);
   const Field& field = fineSlab().field;
   const auto with = compileStages(upTo(1, automatic(300)), field, std::span(&gentle, 1));
   EXPECT_FALSE(with->stabilisers.lateral);
@@ -173,13 +174,13 @@ TEST(LateralCoupling, IsAbsentWhereTheTextureIsGentle) {
   EXPECT_TRUE(hasLateral(*compileStages(upTo(1, automatic(300)), field, std::span(&stiff, 1))));
   EXPECT_FALSE(hasLateral(*compileStages(bare(300), field, std::span(&stiff, 1))));
   EXPECT_FALSE(hasLateral(*compileStages(sceneOf(300), field, std::span(&stiff, 1))));
-  Scene literal = automatic(300); // which has no force along the surface
+  Scene literal = automatic(300); // this form has no force along the surface
   literal.relief.form = ForceForm::literal;
   EXPECT_FALSE(hasLateral(*compileStages(literal, field, std::span(&stiff, 1))));
 }
 
-// The whole top is the second object's.
-std::array<FeltObject, 2> stiffAndGentle() {
+// The whole top belongs to the second object.
+std::array<HapticObject, 2> stiffAndGentle() {
   const auto& triangles = fineSlab().mesh->triangles;
   std::int32_t top = 0;
   const auto isTop = [&](std::int32_t f) {
@@ -189,65 +190,65 @@ std::array<FeltObject, 2> stiffAndGentle() {
   };
   while (top < static_cast<std::int32_t>(triangles.size()) && !isTop(top)) ++top;
   EXPECT_GT(top, 0);
-  std::array<FeltObject, 2> objects{waves(50e-6), waves(10e-6)};
+  std::array<HapticObject, 2> objects{waves(50e-6), waves(10e-6)};
   objects[1].first_face = top;
   return objects;
 }
 
-// By object: the stiff texture of one is not what the other is felt by.
-TEST(LateralCoupling, LeavesTheGentleTextureOfAnotherObjectAsItIs) {
-  const std::array<FeltObject, 2> objects = stiffAndGentle();
+// The coupling is per object: the stiff texture of one does not change the force of the other.
+TEST(LateralCoupling, DoesNotChangeTheGentleTextureOfAnotherObject) {
+  const std::array<HapticObject, 2> objects = stiffAndGentle();
   const auto with = compileStages(upTo(1, automatic(300)), fineSlab().field, objects);
   ASSERT_TRUE(hasLateral(*with));
   expectSameForces(*with, *compileStages(upTo(1, bare(300)), fineSlab().field, objects), 2e-3);
 }
 
-// The probe presses without the force limit, but judges by it.
-TEST(LateralCoupling, TheProbeFeelsTheGentleTextureOfAnotherObjectAsItIs) {
-  const std::array<FeltObject, 2> objects = stiffAndGentle();
+// The probe presses without the force limit, but applies it to the verdict.
+TEST(LateralCoupling, ProbeSeesTheGentleTextureOfAnotherObjectUnchanged) {
+  const std::array<HapticObject, 2> objects = stiffAndGentle();
   const Vec3 valley(0.5 * kWave, 1e-4, 0);
-  const auto lateralOf = [&](std::span<const FeltObject> felt) {
+  const auto lateralOf = [&](std::span<const HapticObject> felt) {
     const auto at = StiffnessProbe(upTo(1, automatic(300)), fineSlab().field, felt).at(valley);
     EXPECT_TRUE(at);
-    return at ? at->lateral : -1;
+    return at ? at->lateral_stiffness : -1;
   };
   EXPECT_EQ(lateralOf(objects), 0);
-  EXPECT_GT(lateralOf(std::span(objects).first(1)), 0); // which then has the top
+  EXPECT_GT(lateralOf(std::span(objects).first(1)), 0); // this object alone decides
 }
 
-// The map is of the scene as it is felt: calm with the coupling.
-TEST(LateralCoupling, TheMapSeesTheTextureThroughIt) {
-  TriangleMesh points; // of a map only the vertices count
+// The map is for the rendered scene: stable with the coupling.
+TEST(LateralCoupling, MapIncludesTheCoupling) {
+  TriangleMesh points; // a map uses only the vertices
   for (int i = 0; i < 400; ++i)
     points.positions.emplace_back(kWave / 20 * (i % 20), kWave / 20 * (i / 20), 0);
   Progress progress;
   for (const Texture& texture : stiffTextures())
     for (const double stiffness : {300.0, 2000.0}) {
       const auto mapOf = [&](const Scene& scene) {
-        const FeltObject object = texture.on(scene);
+        const HapticObject object = texture.on(scene);
         return stabilityMap(scene, texture.field, points, progress, std::span(&object, 1));
       };
       const StabilityMap with = mapOf(automatic(stiffness)), without = mapOf(bare(stiffness));
       std::printf("%s, K %.0f: worst ratio %.2f (%zu jump), without %.2f\n", texture.name,
-                  stiffness, with.worst_ratio, with.jumping, without.worst_ratio);
+                  stiffness, with.worst_ratio, with.discontinuous_count, without.worst_ratio);
       EXPECT_EQ(with.buzzing, 0u) << texture.name << " " << stiffness;
       EXPECT_GT(with.worst_ratio, 1) << texture.name << " " << stiffness;
       EXPECT_LT(without.worst_ratio, 0.7) << texture.name << " " << stiffness;
     }
 }
 
-TEST(LateralCoupling, TheMapsStiffnessOfAValleyIsTheSeries) {
+TEST(LateralCoupling, MapsStiffnessOfAValleyIsTheSeries) {
   const Scene scene = automatic(500);
-  const FeltObject object = waves(50e-6);
-  const std::span<const FeltObject> objects(&object, 1);
+  const HapticObject object = waves(50e-6);
+  const std::span<const HapticObject> objects(&object, 1);
   const StiffnessProbe probe(scene, fineSlab().field, objects);
   const auto at = probe.at(Vec3(0.5 * kWave, 1e-4, 0));
   ASSERT_TRUE(at);
-  const double series = inSeries(at->force * object.bend, at->lateral);
+  const double series = inSeries(at->force * object.max_curvature, at->lateral_stiffness);
   EXPECT_NEAR(at->matrix(0, 0), series, 0.01 * series);
 }
 
-// Ratio of a tick over stiff texture to one without the coupling.
+// Ratio of a tick's time over stiff texture to one without the coupling.
 PATINA_TIMED_TEST(LateralCouplingTiming, ATickCostsLittleMore) {
   for (const Texture& texture : stiffTextures()) {
     const auto with = compiledOn(texture, automatic(500)), without = compiledOn(texture, bare(500));
@@ -258,7 +259,7 @@ PATINA_TIMED_TEST(LateralCouplingTiming, ATickCostsLittleMore) {
           tick(snapshot, memory, Vec3(2e-6 * i, 1e-6 * i, -2e-3), 1e-3);
       };
     };
-    const std::vector<double> seconds = test::leastSeconds({slide(*with), slide(*without)});
+    const std::vector<double> seconds = test::minSeconds({slide(*with), slide(*without)});
     std::printf("%s: a tick %.0f ns, %.0f without: %.2f\n", texture.name, 5e5 * seconds[0],
                 5e5 * seconds[1], seconds[0] / seconds[1]);
     EXPECT_LT(seconds[0] / seconds[1], 3) << texture.name;

@@ -1,4 +1,4 @@
-// The closed loop where things go wrong: MATH 2.8, contact.
+// The closed loop under disturbances: MATH 2.8, contact.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ TEST(LoopExtremes, JitterIsTheSameAgainWithTheSameSeed) {
   EXPECT_NE(a.max_depth, runOn(kStiff, spec).max_depth);
 }
 
-TEST(LoopExtremes, AMissedTickOf20MsIsAbsorbedAtRestAndOnTheWayIn) {
+TEST(LoopExtremes, AbsorbsAMissedTickOf20MsAtRestAndOnEntry) {
   for (const double at : {0.002, 0.004, 0.5, 3.}) {
     SimulationSpec spec = pressedAt(.2);
     spec.missed = MissedTick{at, 0.02};
@@ -51,7 +51,7 @@ TEST(LoopExtremes, AMissedTickOf20MsIsAbsorbedAtRestAndOnTheWayIn) {
   }
 }
 
-TEST(LoopExtremes, ATeleportOf50MmEndsAtRest) {
+TEST(LoopExtremes, TeleportOf50MmEndsAtRest) {
   for (const double by : {-0.05, 0.05}) {
     SimulationSpec spec = pressedAt(.2);
     spec.seconds = 12;

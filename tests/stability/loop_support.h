@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "app/studies/haptics/measured_limit.h"
-#include "haptics/contact/plane.h"
-#include "haptics/devices/simulation.h"
+#include "haptics/law/plane.h"
+#include "haptics/simulation/simulation.h"
 
 namespace patina {
 

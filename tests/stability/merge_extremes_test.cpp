@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "field/merge/merge_fields.h"
 #include "field/merge/redistance.h"
-#include "field/store/block_lattice.h"
 #include "geometry/mesh/shapes.h"
+#include "haptics/law/snapshot.h"
 #include "haptics/servo/cross_fade.h"
-#include "haptics/servo/snapshot.h"
 
 namespace patina {
 namespace {
@@ -23,7 +22,7 @@ struct Placed {
   Vec3 at = Vec3::Zero();
 };
 
-// As a scene of these objects compiles: at `resolution` cells, band 8.
+// Compiles a scene of these objects at `resolution` cells, band 8.
 std::shared_ptr<const HapticSnapshot> united(const std::vector<Placed>& objects, bool redistance,
                                              int resolution = 150, double shift = 0) {
   Progress progress;
@@ -39,7 +38,7 @@ std::shared_ptr<const HapticSnapshot> united(const std::vector<Placed>& objects,
   FieldSpec spec;
   spec.resolution = resolution;
   const FieldGrid grid = gridAround(box, spec);
-  // `shift` [voxel] moves the nodes against the objects: no result may hang on where they fall.
+  // `shift` [voxel] moves the nodes against the objects: no result may depend on it.
   const BlockLattice lattice{grid.origin - Vec3::Constant(shift * grid.voxel), grid.voxel};
   std::vector<FieldPart> parts;
   std::int32_t first_face = 0;
@@ -65,7 +64,7 @@ struct Walk {
   int faults = 0;
 };
 
-// At no more than `step` metres a tick.
+// Moves the tip by at most `step` metres a tick.
 Walk walk(const HapticSnapshot& snapshot, ContactMemory& memory, const std::vector<Vec3>& path,
           double step = 1e-4) {
   Walk result;
@@ -110,12 +109,12 @@ const std::vector<Vec3>& nearCentre() {
 }
 
 // T-K14e, F9.
-TEST(MergeExtremes, DeepInTwoSpheresTheWayOutIsTheShortestOne) {
+TEST(MergeExtremes, ShortestWayOutIsTakenDeepInTwoSpheres) {
   for (const double shift : {0.0, 1.3, 4.0, 6.7}) {
     const auto snapshot = united(deepPair(), true, 150, shift);
     for (const Vec3& tip : nearCentre()) {
       ContactMemory memory;
-      for (int i = 0; i < 200; ++i) { // at once, and while it stays
+      for (int i = 0; i < 200; ++i) { // at once, and while it rests
         const Contact contact = tick(*snapshot, memory, tip, kDt);
         ASSERT_TRUE(contact.touching);
         ASSERT_NEAR(vcpDistance(contact), kExit, kMergedVoxel)
@@ -125,7 +124,7 @@ TEST(MergeExtremes, DeepInTwoSpheresTheWayOutIsTheShortestOne) {
   }
 }
 
-TEST(MergeExtremes, AlongAPathFromOutsideTooAndWithoutAJump) {
+TEST(MergeExtremes, ShortestWayOutIsTakenAlongAPathWithoutAJump) {
   for (const double shift : {0.0, 4.0}) {
     const auto snapshot = united(deepPair(), true, 150, shift);
     for (const Vec3& tip : nearCentre()) {
@@ -141,8 +140,8 @@ TEST(MergeExtremes, AlongAPathFromOutsideTooAndWithoutAJump) {
   }
 }
 
-// Straight through the ends the first side is kept, as in any solid (K03): no turn, no jump.
-TEST(MergeExtremes, ThroughBothCentresTheForceStaysFiniteAndBounded) {
+// A path straight through keeps the first side, as in any solid (K03): no reversal, no jump.
+TEST(MergeExtremes, ForceStaysFiniteAndBoundedThroughBothCentres) {
   for (const bool redistance : {false, true}) {
     const auto snapshot = united(deepPair(), redistance);
     ContactMemory memory;
@@ -152,7 +151,7 @@ TEST(MergeExtremes, ThroughBothCentresTheForceStaysFiniteAndBounded) {
   }
 }
 
-TEST(MergeExtremes, WithoutRedistancingTheForceIsFiniteAndBounded) {
+TEST(MergeExtremes, ForceIsFiniteAndBoundedWithoutRedistancing) {
   const auto snapshot = united(deepPair(), false);
   for (const Vec3& tip : nearCentre()) {
     ContactMemory memory;
@@ -168,7 +167,7 @@ TEST(MergeExtremes, WithoutRedistancingTheForceIsFiniteAndBounded) {
   }
 }
 
-TEST(MergeExtremes, IdenticalObjectsFeelAsOneBitForBit) {
+TEST(MergeExtremes, IdenticalObjectsEqualOneBitForBit) {
   const auto one = united({{icosphere(kR, 16)}}, false, 100);
   const auto two = united({{icosphere(kR, 16)}, {icosphere(kR, 16)}}, false, 100);
   ContactMemory a, b;
@@ -179,7 +178,7 @@ TEST(MergeExtremes, IdenticalObjectsFeelAsOneBitForBit) {
   }
 }
 
-TEST(MergeExtremes, AnObjectInsideAnotherIsNotFelt) {
+TEST(MergeExtremes, ObjectInsideAnotherHasNoEffect) {
   const auto big = united({{icosphere(kR, 16)}}, true, 100);
   const auto both =
       united({{icosphere(kR, 16)}, {icosphere(0.006, 8), Vec3(0.003, 0, 0)}}, true, 100);
@@ -190,7 +189,7 @@ TEST(MergeExtremes, AnObjectInsideAnotherIsNotFelt) {
   EXPECT_GT(x.last.force.norm(), 1);
 }
 
-TEST(MergeExtremes, SpheresThatTouchAtAPointHaveNoSpikeBetweenThem) {
+TEST(MergeExtremes, SpheresTouchingAtAPointHaveNoSpikeBetweenThem) {
   const std::vector<Placed> pair = {{icosphere(0.01, 20), Vec3(-0.01, 0, 0)},
                                     {icosphere(0.01, 20), Vec3(0.01, 0, 0)}};
   for (const bool redistance : {false, true}) {
@@ -206,7 +205,7 @@ TEST(MergeExtremes, SpheresThatTouchAtAPointHaveNoSpikeBetweenThem) {
 }
 
 // T-K14d: 1 mm deep from one sphere over the seam onto the other.
-TEST(MergeExtremes, SlidingOverTheSeamHasNoSpike) {
+TEST(MergeExtremes, SlideOverTheSeamHasNoSpike) {
   const auto snapshot = united(deepPair(), true);
   const double depth = 1e-3, from = 0.7, speed = 0.05; // [m], [rad] about a centre, [m/s]
   const double r = kR - depth;
@@ -214,7 +213,7 @@ TEST(MergeExtremes, SlidingOverTheSeamHasNoSpike) {
   (void)walk(*snapshot, memory,
              {Vec3(kOff + 0.025 * std::sin(from), 0.025 * std::cos(from), 0),
               Vec3(kOff + r * std::sin(from), r * std::cos(from), 0)});
-  const double seam = -std::asin(kOff / r); // of the right sphere, where x = 0
+  const double seam = -std::asin(kOff / r); // seam of the right sphere, where x = 0
   const double tick_angle = speed * kDt / r;
   double side = 0, most = 0, turn = 0;
   Vec3 last = Vec3::Zero();
@@ -234,12 +233,12 @@ TEST(MergeExtremes, SlidingOverTheSeamHasNoSpike) {
     }
   EXPECT_NEAR(side, kStiffness * depth, 0.02);
   EXPECT_LT(most, 1.2 * side);
-  // 60 degrees of crease, spread over the cells about it.
+  // The crease has 60 degrees, spread over the cells about it.
   const double jump = M_PI / 3;
   EXPECT_LT(turn, 3 * jump * speed * kDt / kMergedVoxel);
 }
 
-TEST(MergeExtremes, HundredObjectsAreFeltEachAsItself) {
+TEST(MergeExtremes, HundredObjectsAreTouchedSeparately) {
   std::vector<Placed> objects;
   for (int i = 0; i < 100; ++i)
     objects.push_back({icosphere(0.006, 5), Vec3(0.012 * (i % 10), 0.012 * (i / 10), 0)});
@@ -252,7 +251,7 @@ TEST(MergeExtremes, HundredObjectsAreFeltEachAsItself) {
   }
 }
 
-// MATH 2.4: the object around the tip is taken away, moved aside, and put back.
+// MATH 2.4: the object around the tip is removed, moved aside, and put back.
 TEST(MergeExtremes, EditsOfTheObjectAroundTheTipFade) {
   const std::vector<Placed> pair = {{icosphere(0.01, 16), Vec3(-0.02, 0, 0)},
                                     {icosphere(0.01, 16), Vec3(0.02, 0, 0)}};
@@ -260,14 +259,14 @@ TEST(MergeExtremes, EditsOfTheObjectAroundTheTipFade) {
   const auto aside = united({pair[0], {pair[1].mesh, Vec3(0.02, 0, 0.004)}}, false);
   const Vec3 tip(0.02, 0, 0.007);
   CrossFade fade;
-  fade.turnTo(both.get());
+  fade.fadeTo(both.get());
   Contact contact;
   for (int i = 0; i < 200; ++i) contact = fade.tick(tip + Vec3(0, 0, 2.5e-5 * (199 - i)), kDt);
   const Vec3 felt = contact.force;
   ASSERT_GT(felt.norm(), 1);
   for (const HapticSnapshot* next : {left.get(), both.get(), aside.get(), left.get()}) {
     for (int i = 0; i < 500 && fade.fading(); ++i) (void)fade.tick(tip, kDt);
-    fade.turnTo(next);
+    fade.fadeTo(next);
     for (int i = 0; i < 500; ++i) {
       const Vec3 before = contact.force;
       contact = fade.tick(tip, kDt);
@@ -276,7 +275,7 @@ TEST(MergeExtremes, EditsOfTheObjectAroundTheTipFade) {
       EXPECT_FALSE(contact.fault);
     }
     if (next == both.get()) {
-      // Over faces c rests to 5e-3 voxel.
+      // The contact point c on faces comes to rest to 5e-3 voxel.
       EXPECT_NEAR((contact.force - felt).norm(), 0, 2e-3);
     } else if (next == left.get()) {
       EXPECT_EQ(contact.force.norm(), 0);

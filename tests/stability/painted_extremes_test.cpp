@@ -5,29 +5,29 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/devices/simulation.h"
+#include "haptics/law/coupling_stage.h"
+#include "haptics/loop_model/stability_limit.h"
 #include "haptics/painted_fixture.h"
-#include "haptics/stability/stability_limit.h"
+#include "haptics/simulation/simulation.h"
 #include "haptics/stability/stability_map.h"
-#include "haptics/stages/coupling_stage.h"
 #include "stability/texture_support.h"
 
 namespace patina {
 namespace {
 
-std::shared_ptr<const HapticSnapshot> compiledWith(const Scene& scene, const FeltObject& object,
+std::shared_ptr<const HapticSnapshot> compiledWith(const Scene& scene, const HapticObject& object,
                                                    const Field& field) {
   return compileStages(scene, field, std::span(&object, 1));
 }
 
-FeltObject halves(const Scene& scene, double k1, double k2) {
-  return feltMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::stiffness,
-                                  [=](const Vec3& p) { return p.x() > 0 ? k2 : k1; }),
-                      scene);
+HapticObject halves(const Scene& scene, double k1, double k2) {
+  return hapticMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::stiffness,
+                                    [=](const Vec3& p) { return p.x() > 0 ? k2 : k1; }),
+                        scene);
 }
 
 // The stiffest paint decides, not the scene's own value.
-TEST(PaintedStiffness, TheCouplingIsPlannedForTheStiffestPaint) {
+TEST(PaintedStiffness, CouplingIsPlannedForTheStiffestPaint) {
   Scene scene = sceneOf(300);
   scene.device_model = DeviceModel{};
   const Field plane = planeField(kVoxel);
@@ -44,12 +44,12 @@ TEST(PaintedStiffness, TheCouplingIsPlannedForTheStiffestPaint) {
   EXPECT_NEAR(displayed(-4e-3), inSeries(300, k_c), 1);
 }
 
-TEST(PaintedStiffness, TheLoopBuzzesWhereTheTheorySaysAndTheCouplingStopsIt) {
+TEST(PaintedStiffness, LoopBuzzesAtThePredictedLimitAndTheCouplingStopsIt) {
   const Field plane = planeField(kVoxel);
   for (const double share : {0.9, 1.1}) {
     Scene scene = sceneOf(300);
     const double limit = stiffnessLimit(sampledLoop(DeviceModel{}));
-    const FeltObject object = halves(scene, 300, share * limit);
+    const HapticObject object = halves(scene, 300, share * limit);
     SimulationSpec spec;
     spec.surface = Vec3(5e-3, 1e-3, 0);
     spec.depth = 1 / (share * limit);
@@ -65,8 +65,8 @@ TEST(PaintedStiffness, TheLoopBuzzesWhereTheTheorySaysAndTheCouplingStopsIt) {
 }
 
 // K from 1 to 1e7 within one cell of half a millimetre: gradients of 2e10 N/m^2. The tip is pressed
-// beside the step, on it and slid over it.
-TEST(PaintedStiffness, FromOneToTenMillionAcrossACellStaysBounded) {
+// next to the step, on it and slid over it.
+TEST(PaintedStiffness, ForceStaysBoundedFromOneToTenMillionAcrossACell) {
   const Field plane = planeField(kVoxel, 96);
   for (const ForceForm form : {ForceForm::conservative, ForceForm::literal})
     for (const bool coupled : {true, false}) {
@@ -75,7 +75,7 @@ TEST(PaintedStiffness, FromOneToTenMillionAcrossACellStaysBounded) {
       scene.haptics.force_limit = 3.3;
       if (coupled) scene.device_model = DeviceModel{};
       const auto snapshot = compiledWith(scene, halves(scene, 1, 1e7), plane);
-      // By hand: slid over at every depth.
+      // Slides over the edge at every depth.
       for (const double d : {1e-5, 1e-3, 4e-3}) {
         ContactMemory memory;
         glide(*snapshot, memory, Vec3(-3e-3, 1e-4, -d));
@@ -91,7 +91,7 @@ TEST(PaintedStiffness, FromOneToTenMillionAcrossACellStaysBounded) {
         spec.surface = Vec3(x, 1e-4, 0);
         spec.depth = -1e-3;
         spec.speed = 0.05;
-        spec.press = 0.01; // what the soft side can bear within the grid
+        spec.press = 0.01; // the soft side can bear it within the grid
         spec.seconds = 6;
         Progress progress;
         const SimulationReport run = simulate(*snapshot, spec, progress);
@@ -109,8 +109,8 @@ TEST(PaintedStiffness, FromOneToTenMillionAcrossACellStaysBounded) {
     }
 }
 
-// Conservative also at that ratio, where the path is fine enough to see the step.
-TEST(PaintedStiffness, TheConservativeFormDoesNoWorkAtAnyRatio) {
+// The form is conservative also at that ratio, if the path is fine enough to resolve the step.
+TEST(PaintedStiffness, ConservativeFormDoesNoWorkAtAnyRatio) {
   const Field plane = planeField(kVoxel);
   for (const double k2 : {1e3, 1e5, 1e7}) {
     const Scene scene = sceneOf(300);
@@ -126,11 +126,11 @@ TEST(PaintedStiffness, TheConservativeFormDoesNoWorkAtAnyRatio) {
 }
 
 // MATH 2.1.7 with F6: on the slope between two paints the directions are coupled by d grad K.
-TEST(PaintedStiffness, TheMapSeesTheStiffestPaint) {
+TEST(PaintedStiffness, MapIncludesTheStiffestPaint) {
   const Field plane = planeField(kVoxel);
   Scene scene = sceneOf(200);
-  const FeltObject object = halves(scene, 200, 3000);
-  const std::span<const FeltObject> objects(&object, 1);
+  const HapticObject object = halves(scene, 200, 3000);
+  const std::span<const HapticObject> objects(&object, 1);
   const StiffnessProbe probe(scene, plane, objects);
   const auto soft = probe.at(Vec3(-4e-3, 0, 0)), stiff = probe.at(Vec3(4e-3, 0, 0));
   ASSERT_TRUE(soft && stiff);
@@ -138,14 +138,14 @@ TEST(PaintedStiffness, TheMapSeesTheStiffestPaint) {
   EXPECT_NEAR(stiff->lambda_max, 3000, 15);
   EXPECT_NEAR(stiff->depth, 1.0 / 3000, 1e-9);
   EXPECT_EQ(stiff->material.stiffness, 3000);
-  const LoopLimits limits = loopLimits(scene, objects);
+  const StiffnessLimits limits = loopLimits(scene, objects);
   EXPECT_NEAR(stabilityRatio(*soft, scene, limits) / stabilityRatio(*stiff, scene, limits), 15,
               0.1);
   const auto between = probe.at(Vec3(0.5 * kVoxel, 0, 0), 1e-3);
   ASSERT_TRUE(between);
   const double cross = 1e-3 * 2800 / kVoxel; // d grad K
   EXPECT_NEAR(between->matrix(2, 0), -cross, 0.02 * cross);
-  EXPECT_NEAR(between->matrix(0, 2), -cross, 0.02 * cross); // of a potential: symmetric
+  EXPECT_NEAR(between->matrix(0, 2), -cross, 0.02 * cross); // a potential's matrix is symmetric
 }
 
 // Slides over the slab along x at y; the worst force and whether anything faulted.
@@ -168,15 +168,15 @@ Ride ride(const HapticSnapshot& snapshot, double speed, double z) {
   return result;
 }
 
-FeltObject reliefOf(int size, double height, const std::function<double(double, double)>& g) {
-  return feltRelief(fineSlab().faces, reliefImage(size, g), height);
+HapticObject reliefOf(int size, double height, const std::function<double(double, double)>& g) {
+  return hapticRelief(fineSlab().faces, reliefImage(size, g), height);
 }
 
 // A step of 5 mm, a checkerboard at texel frequency, a line of one texel, all white.
 TEST(PaintedRelief, CliffsAndCheckerboardsAreBoundedAndNoFault) {
   struct Case {
     const char* name;
-    FeltObject object;
+    HapticObject object;
   };
   const auto check = [](double u, double v) {
     return (static_cast<int>(u * 512) + static_cast<int>(v * 512)) % 2 ? 1.0 : 0.0;
@@ -214,12 +214,12 @@ TEST(PaintedRelief, CliffsAndCheckerboardsAreBoundedAndNoFault) {
       }
 }
 
-// Off the relief and within the shell about it nothing is remembered of the last contact: the
-// coupling is that of the depth, and its damper that of the tip.
-TEST(PaintedRelief, TheCouplingBeginsAfreshAfterTheShell) {
+// Off the relief and within the shell about it, the last contact is forgotten: the coupling acts on
+// the depth, and its damper on the tip.
+TEST(PaintedRelief, CouplingRestartsAfterTheShell) {
   Scene scene = sceneOf(500);
   scene.stabilisers = Stabilisers{true, false};
-  const FeltObject object = reliefOf(64, 4e-3, [](double u, double) { return u > 0.8 ? 1 : 0; });
+  const HapticObject object = reliefOf(64, 4e-3, [](double u, double) { return u > 0.8 ? 1 : 0; });
   const auto snapshot = compiledWith(scene, object, fineSlab().field);
   ContactMemory memory;
   glide(*snapshot, memory, Vec3(0, 0, 6e-3));
@@ -232,9 +232,9 @@ TEST(PaintedRelief, TheCouplingBeginsAfreshAfterTheShell) {
 }
 
 // A jump of the tip is a fault also over relief.
-TEST(PaintedRelief, ATeleportIsStillAFault) {
+TEST(PaintedRelief, TeleportIsStillAFault) {
   Scene scene = sceneOf(500);
-  const FeltObject object =
+  const HapticObject object =
       reliefOf(256, 0.2e-3, [](double u, double) { return std::cos(100 * u); });
   const auto snapshot = compiledWith(scene, object, fineSlab().field);
   ContactMemory memory;
@@ -242,20 +242,20 @@ TEST(PaintedRelief, ATeleportIsStillAFault) {
   EXPECT_TRUE(tick(*snapshot, memory, Vec3(1e-4, 0, -6.5e-3), 1e-3).fault);
 }
 
-// F7: texture adds P |h''| of lateral stiffness; the map sees it, and the loop buzzes where it
-// says.
-TEST(PaintedRelief, TheMapPredictsTheBuzzOfTexture) {
+// F7: texture adds P |h''| of lateral stiffness; the map includes it, and the loop buzzes at the
+// predicted limit.
+TEST(PaintedRelief, MapPredictsTheBuzzOfTexture) {
   const double wavelength = 1.5e-3, K = 300, P = 0.5;
   const double k = 2 * std::numbers::pi / wavelength;
   const double limit = stiffnessLimit(sampledLoop(DeviceModel{}));
   for (const double share : {0.5, 2.0}) {
     const double A = share * limit / (P * k * k);
-    const FeltObject object = feltRelief(
+    const HapticObject object = hapticRelief(
         fineSlab().faces,
         reliefImage(1024, [&](double u, double) { return -std::cos(k * Slab::kSide * (u - 0.5)); }),
         A);
     Scene scene = sceneOf(K);
-    const std::span<const FeltObject> objects(&object, 1);
+    const std::span<const HapticObject> objects(&object, 1);
     const StiffnessProbe probe(scene, fineSlab().field, objects);
     const auto at = probe.at(Vec3(0, 1e-4, 0), P / K);
     ASSERT_TRUE(at);
@@ -273,14 +273,14 @@ TEST(PaintedRelief, TheMapPredictsTheBuzzOfTexture) {
   }
 }
 
-// Roughness: the rms height that was painted, the same in the conservative way.
-TEST(PaintedRoughness, HasTheRmsHeightThatWasPainted) {
+// Roughness has the painted rms height, the same in the conservative form.
+TEST(PaintedRoughness, HasThePaintedRmsHeight) {
   const double rms = 0.1e-3, K = 500;
   Scene scene = sceneOf(K);
-  const FeltObject object =
-      feltMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::roughness,
-                               [=](const Vec3&) { return rms; }),
-                   scene);
+  const HapticObject object =
+      hapticMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::roughness,
+                                 [=](const Vec3&) { return rms; }),
+                     scene);
   const auto snapshot = compiledWith(scene, object, planeField(kVoxel));
   double sum = 0, square = 0;
   const int count = 200;
@@ -298,12 +298,12 @@ TEST(PaintedRoughness, HasTheRmsHeightThatWasPainted) {
   EXPECT_NEAR(mean, 0, 0.05 * rms);
 }
 
-TEST(PaintedRoughness, DoesNoWorkRoundALoopAlsoWhereItBegins) {
+TEST(PaintedRoughness, DoesNoWorkRoundALoopAlsoAtItsEdge) {
   Scene scene = sceneOf(500);
-  const FeltObject object =
-      feltMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::roughness,
-                               [](const Vec3& p) { return p.x() > 0 ? 0.1e-3 : 0; }),
-                   scene);
+  const HapticObject object =
+      hapticMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::roughness,
+                                 [](const Vec3& p) { return p.x() > 0 ? 0.1e-3 : 0; }),
+                     scene);
   double work[2];
   for (const ForceForm form : {ForceForm::literal, ForceForm::conservative}) {
     scene.relief.form = form;

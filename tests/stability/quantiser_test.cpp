@@ -32,7 +32,7 @@ TEST(Quantiser, RestsBelowItsLimitAndChattersAboveIt) {
     }
 }
 
-// With damping to spare an impact ends the same way.
+// An impact with surplus damping ends the same way.
 TEST(Quantiser, ComesToRestFromAnImpactBelowItsLimit) {
   for (const double friction : {0.02, 0.05}) {
     const double limit = 2 * friction / kStep;
@@ -41,8 +41,9 @@ TEST(Quantiser, ComesToRestFromAnImpactBelowItsLimit) {
   }
 }
 
-// 2.2: stable far above 2b/T from a quiet start only: dry friction locks what an impact would wake.
-TEST(Quantiser, FrictionLocksAWallThatAnImpactWouldSetBuzzing) {
+// 2.2: stable far above 2b/T from a quiet start only: dry friction locks a vibration that an impact
+// would excite.
+TEST(Quantiser, FrictionLocksAWallThatAnImpactWouldExcite) {
   EXPECT_EQ(pressedMidway(1200, 0.02, 0.05, 0).rms_velocity, 0);
   EXPECT_GT(pressedMidway(1200, 0.02, 0.05, 0.2).rms_velocity, 1e-2);
 }
@@ -58,7 +59,7 @@ TEST(Quantiser, ReadsTheNearestStepOnEveryAxis) {
   simulate(
       [&](const Vec3& tip, double) {
         read.push_back(tip);
-        return Felt{Vec3(0.01, 0.02, 0), false, false, 0};
+        return LawOutput{Vec3(0.01, 0.02, 0), false, false, 0};
       },
       spec, progress, [&](const SimulationRow& row) { true_positions.push_back(row.position); });
   for (std::size_t i = 0; i < read.size(); i += 7) {

@@ -1,5 +1,5 @@
-// Below the boundary a bounce tells the effective damping (F4, MATH 2.1.5), and a magnet's cycle
-// its two sides' (F14, T-K13d).
+// A bounce below the boundary gives the effective damping (F4, MATH 2.1.5), and a magnet's cycle
+// that of its two sides (F14, T-K13d).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,8 @@ double predicted(const Bounce& b) {
   return std::exp(-0.5 * kPi * effective / std::sqrt(b.stiffness * b.mass));
 }
 
-// Mean over entry phases: the tip starts a different part of a tick's way off the wall.
+// Returns the mean over entry phases: the tip starts at different parts of a tick's distance off
+// the wall.
 double measured(const Bounce& b) {
   double sum = 0;
   for (int i = 0; i < kPhases; ++i) {
@@ -57,8 +58,8 @@ TEST(Restitution, FollowsTheEffectiveDampingBelowTheBoundary) {
   }
 }
 
-// Without any damping a sampled spring throws back faster than it was hit.
-TEST(Restitution, OfAnUndampedWallIsAboveOneAsPredicted) {
+// A sampled spring without any damping returns more speed than the impact had.
+TEST(Restitution, IsAboveOneAsPredictedForAnUndampedWall) {
   for (const double stiffness : {200., 1000., 5000.}) {
     const Bounce b{.1, stiffness, 0, 0};
     EXPECT_GT(measured(b), 1);
@@ -66,8 +67,8 @@ TEST(Restitution, OfAnUndampedWallIsAboveOneAsPredicted) {
   }
 }
 
-// Against the damped half wave, of which the formula is the first term, the error is of the first
-// order in the period.
+// The formula is the first term of the damped half wave: its error is of the first order in the
+// period.
 TEST(Restitution, ApproachesTheDampedHalfWaveWithTheRate) {
   for (const double rate : {500., 1000., 2000., 4000., 8000.}) {
     const Bounce b{.1, 400, .8, 0, rate};
@@ -109,13 +110,13 @@ SimulationSpec released(double height) {
   return spec;
 }
 
-// F14, T-K13d, with the law itself: a side may exceed 2b/T if the other makes up for it.
+// F14, T-K13d, with the law itself: one side may exceed 2b/T if the other compensates.
 TEST(MagneticSurface, AmplitudePerCycleFollowsBothSides) {
   const double sides[][2] = {{1500, 500}, {3000, 1500}, {2500, 500}, {800, 800}};
   for (const auto& [inner, outer] : sides) {
     const double k_in = inner, k_out = outer;
     const ForceLaw law = [=](const Vec3& tip, double) {
-      Felt felt;
+      LawOutput felt;
       felt.force.z() = -(tip.z() < 0 ? k_in : k_out) * tip.z();
       felt.touching = tip.z() < 0;
       return felt;
@@ -139,7 +140,7 @@ TEST(MagneticSurface, AmplitudePerCycleFollowsBothSidesThroughTheStages) {
     ContactMemory memory;
     const ForceLaw law = [&](const Vec3& tip, double dt) {
       const Contact contact = tick(*snapshot, memory, tip, dt);
-      return Felt{contact.force, contact.touching, contact.fault, contact.depth};
+      return LawOutput{contact.force, contact.touching, contact.fault, contact.depth};
     };
     const double height = inner > 2000 ? 0.5e-3 : 1.5e-3; // the second one grows
     EXPECT_NEAR(ratioPerCycle(law, released(height)), amplitudeRatio(inner, outer, .1, .5, 5e-4),

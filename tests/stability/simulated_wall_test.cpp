@@ -1,4 +1,4 @@
-// Where the simulated loop stops settling, against eigenvalues and closed form (F3, MATH 2.1).
+// The stability limit of the simulated loop, against eigenvalues and closed form (F3, MATH 2.1).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ void expectMeasured(const SimulationSpec& spec, const Wall& wall, double toleran
 }
 
 // MATH 2.1.2.
-TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithoutDelay) {
+TEST(SimulatedWall, IsStableUpToTheEigenvalueLimitWithoutDelay) {
   const struct {
     double mass, damping, limit;
   } table[] = {{.05, .5, 1001.7}, {.1, .1, 200.03}, {.1, .5, 1000.83},
@@ -43,7 +43,7 @@ TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithoutDelay) {
 }
 
 // MATH 2.1.3 over delays and virtual damping.
-TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithDelayAndVirtualDamping) {
+TEST(SimulatedWall, IsStableUpToTheEigenvalueLimitWithDelayAndVirtualDamping) {
   const struct {
     int delay;
     double limit[5];
@@ -62,18 +62,18 @@ TEST(SimulatedWall, EndsWhereTheEigenvaluesSayWithDelayAndVirtualDamping) {
   for (const int delay : {3, 4}) expectMeasured(specOf(.1, .5, delay), {.damping = 2}, 0.003);
 }
 
-// F3: what a person would do in the head.
-TEST(SimulatedWall, EndsWithinAFewPerCentOfTheRuleOfThumb) {
+// F3: the rule of thumb.
+TEST(SimulatedWall, IsStableUpToAFewPerCentOfTheRuleOfThumb) {
   for (const int delay : {0, 1, 2})
     for (const double damping : {0., .5, 1., 2.}) {
       const Wall wall{.damping = damping};
       const SimulationSpec spec = specOf(.1, .5, delay);
-      const double rule = ruleOfThumb(sceneLoop(propertiesOf(wall), spec.device));
+      const double rule = linearStabilityLimit(sceneLoop(propertiesOf(wall), spec.device));
       EXPECT_NEAR(limitOf(spec, wall) / rule, 1, 0.03);
     }
 }
 
-TEST(SimulatedWall, EndsWhereTheEigenvaluesSayAtOtherRatesAndWithAHand) {
+TEST(SimulatedWall, IsStableUpToTheEigenvalueLimitAtOtherRatesAndWithAHand) {
   for (const double rate : {250., 4000., 10000.})
     expectMeasured(specOf(.1, .5, 1, rate), {}, 0.003);
   SimulationSpec held = specOf(.05, .1);
@@ -83,7 +83,7 @@ TEST(SimulatedWall, EndsWhereTheEigenvaluesSayAtOtherRatesAndWithAHand) {
 }
 
 // MATH 2.1.4: a filter is a delay of the damping.
-TEST(SimulatedWall, EndsEarlierTheLowerTheCutoffOfTheVelocity) {
+TEST(SimulatedWall, LimitFallsWithTheCutoffOfTheVelocity) {
   double before = limitOf(specOf(.1, .5), {.damping = 2});
   for (const double cutoff : {2000., 500., 200., 100.}) {
     const Wall wall{.damping = 2, .cutoff = cutoff};
@@ -95,17 +95,17 @@ TEST(SimulatedWall, EndsEarlierTheLowerTheCutoffOfTheVelocity) {
 }
 
 // MATH 2.1.3: virtual damping alone buzzes from about 2m/T on.
-TEST(SimulatedWall, DampingItselfBuzzesAboveItsOwnLimit) {
+TEST(SimulatedWall, DampingAloneBuzzesAboveItsOwnLimit) {
   for (const double mass : {.05, .1, .2}) {
     const double limit = dampingLimit(sampledLoop(specOf(mass, .5).device));
     EXPECT_NEAR(limit, 2 * mass / 1e-3 + .7, .1);
     for (const double share : {0.97, 1.03}) {
-      // Without the wall's F.n >= 0, so that it is the damper alone.
+      // The wall's condition F.n >= 0 is left out, so that the damper acts alone.
       double last = 0;
       const ForceLaw damper = [&](const Vec3& tip, double dt) {
         const double velocity = (tip.z() - last) / dt;
         last = tip.z();
-        return Felt{Vec3(0, 0, -share * limit * velocity), false, false, 0};
+        return LawOutput{Vec3(0, 0, -share * limit * velocity), false, false, 0};
       };
       SimulationSpec spec = specOf(mass, .5);
       spec.speed = 1e-6;
@@ -136,18 +136,18 @@ TEST(SimulatedWall, LedgerIsTheLossOfKineticEnergy) {
   const double kinetic = 0.5 * .1 * (.2 * .2 - last.velocity.squaredNorm());
   EXPECT_NEAR(last.energy, kinetic, 1e-12);
   EXPECT_LT(run.energy.absorbed, 0) << "a sampled spring gives energy";
-  EXPECT_DOUBLE_EQ(run.energy.credited, run.energy.absorbed) << "there is no damping to credit";
+  EXPECT_DOUBLE_EQ(run.energy.absorbed_with_damping, run.energy.absorbed) << "no damping to credit";
 }
 
-// 2.3: in the safe region the surface alone gives energy, and the device's damping takes it.
+// 2.3: in the safe region only the surface gives energy, and the device's damping dissipates it.
 TEST(SimulatedWall, CreditedLedgerStaysPositiveWhereTheLoopIsStable) {
   SimulationSpec spec = specOf(.1, .5);
   spec.speed = .2;
   spec.press = 1;
   const SimulationReport safe = runOn({.stiffness = 900}, spec);
   EXPECT_LT(safe.energy.lowest_absorbed, -5e-3);
-  EXPECT_GT(safe.energy.lowest_credited, -1e-12);
-  EXPECT_LT(runOn({.stiffness = 3000}, spec).energy.lowest_credited, -1e-4);
+  EXPECT_GT(safe.energy.lowest_absorbed_with_damping, -1e-12);
+  EXPECT_LT(runOn({.stiffness = 3000}, spec).energy.lowest_absorbed_with_damping, -1e-4);
 }
 
 } // namespace

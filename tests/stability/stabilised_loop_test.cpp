@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "haptics/contact_fixture.h"
-#include "haptics/stages/coupling_stage.h"
+#include "haptics/law/coupling_stage.h"
 #include "stability/loop_support.h"
 
 namespace patina {
@@ -21,7 +21,7 @@ SimulationSpec pressed(double speed, int delay = 0) {
   return spec;
 }
 
-// T-SAFE and T-VC1, with the coupling as stiff as was promised.
+// T-SAFE and T-VC1, with the coupling at its planned stiffness.
 TEST(StabilisedLoop, RestsAtAnyStiffnessAndDisplaysTheSeriesFormula) {
   for (const double stiffness : kWallStiffnesses)
     for (const int delay : {0, 1, 2})
@@ -43,9 +43,9 @@ TEST(StabilisedLoop, RestsAtAnyStiffnessAndDisplaysTheSeriesFormula) {
       }
 }
 
-// Whatever the device, the net never makes it worse, and where it acts the tip comes to rest: with
-// an encoder within a step of it a tick.
-TEST(StabilisedLoop, IsNeverWorseThanWithoutOnAnyDevice) {
+// The stabilisers never make the loop worse on any device, and where they act the tip comes to
+// rest: with an encoder within one step a tick.
+TEST(StabilisedLoop, IsNeverWorseThanThePlainLoopOnAnyDevice) {
   for (const double mass : {.02, .1, .5})
     for (const double damping : {0., .5, 5.})
       for (const double rate : {500., 1000., 4000.})
@@ -68,7 +68,7 @@ TEST(StabilisedLoop, IsNeverWorseThanWithoutOnAnyDevice) {
             }
 }
 
-// T-PC1; the verdict of a loop that rings has to show what the net is for.
+// T-PC1; a loop that rings shows the need for the controller.
 TEST(StabilisedLoop, PassivityControllerQuietensUpToTenTimesTheLimit) {
   for (const double stiffness : {3000., 1e4}) {
     const SimulationReport run =
@@ -85,13 +85,14 @@ TEST(StabilisedLoop, PassivityControllerQuietensUpToTenTimesTheLimit) {
 TEST(StabilisedLoop, NaiveLimiterIsWorseThanNothing) {
   SimulationSpec spec = pressed(.2);
   const double plain = runOn({.stiffness = 3000}, spec).rms_velocity;
-  spec.naive_limit = 2 * spec.device.damping * spec.device.rate;
+  spec.rate_limit = 2 * spec.device.damping * spec.device.rate;
   const SimulationReport naive = runOn({.stiffness = 3000}, spec);
   EXPECT_GE(naive.rms_velocity, 3 * plain);
   EXPECT_FALSE(naive.stable);
 }
 
-// MATH 2.3 without a net and with damping alone, as docs/studies.md lists them [m/s, 8th second].
+// MATH 2.3 without stabiliser and with damping alone, as docs/studies.md lists them [m/s, 8th
+// second].
 TEST(StabilisedLoop, PlainAndDampedWallsFollowTheTable) {
   EXPECT_NEAR(runOn({.stiffness = 900}, pressed(.2)).rms_velocity, 2.0e-2, 4e-3);
   EXPECT_NEAR(runOn({.stiffness = 3000}, pressed(.2)).rms_velocity, .21, .02);
@@ -123,7 +124,7 @@ TEST(StabilisedLoop, SaturationBoundsForceAndMotionAndKeepsTheDirection) {
   Progress progress;
   simulate(
       [&](const Vec3&, double) {
-        return Felt{wanted, false, false, 0};
+        return LawOutput{wanted, false, false, 0};
       },
       spec, progress,
       [&](const SimulationRow& row) {
@@ -145,7 +146,8 @@ SimulationReport stopsWhileStuck(double stiffness, bool stabilised) {
        (stabilised ? 1 / snapshot->stabilisers.coupling.value_or(CouplingPlan{1}).stiffness : 0));
   const ForceLaw law = [&](const Vec3& tip, double dt) {
     const Contact contact = tick(*snapshot, memory, tip, dt);
-    return Felt{contact.force - Vec3(0, 0, kPress), contact.touching, contact.fault, contact.depth};
+    return LawOutput{contact.force - Vec3(0, 0, kPress), contact.touching, contact.fault,
+                     contact.depth};
   };
   SimulationSpec spec;
   spec.surface = Vec3(0, 0, -depth);
@@ -162,13 +164,13 @@ TEST(StabilisedLoop, SticksQuietlyBelowTheLimitAlongTheSurface) {
   EXPECT_FALSE(stopsWhileStuck(1100, false).stable);
 }
 
-TEST(StabilisedLoop, CouplingQuietensStickToo) {
+TEST(StabilisedLoop, CouplingQuietensStick) {
   for (const double stiffness : {1100., 1e4, 1e5})
     EXPECT_LT(stopsWhileStuck(stiffness, true).rms_velocity, 1e-9) << stiffness;
 }
 
 // An absent plan is an absent stage and bitwise the same force.
-TEST(StabilisedLoop, CostsNothingWhereTheSceneIsSafe) {
+TEST(StabilisedLoop, CostsNothingInASafeScene) {
   Scene plain = sceneOf(400), safe = sceneOf(400);
   safe.device_model = DeviceModel{};
   const Field field = planeField();
@@ -182,7 +184,7 @@ TEST(StabilisedLoop, CostsNothingWhereTheSceneIsSafe) {
   }
 }
 
-// The whole of it on a curved surface, through compileStages.
+// The whole pipeline on a curved surface, through compileStages.
 TEST(StabilisedLoop, RestsOnASphere) {
   Scene scene = sceneOf(1e5);
   scene.device_model = DeviceModel{};
@@ -197,8 +199,8 @@ TEST(StabilisedLoop, RestsOnASphere) {
               inSeries(1e5, snapshot->stabilisers.coupling->stiffness), 5);
 }
 
-// A tip that nearly fills a bowl: R is what its centre may move. Its walls are nearly one, and K d
-// / (R + d) along them is above what the device alone damps.
+// A tip that nearly fills a bowl: R is its centre's range. Its walls are nearly one, and K d / (R +
+// d) along them exceeds what the device alone damps.
 TEST(StabilisedLoop, RestsInABowlHardlyWiderThanTheTip) {
   double worst = 0;
   for (const double room : {0.2e-3, 0.5e-3, 1e-3})

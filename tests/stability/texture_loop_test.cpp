@@ -1,18 +1,18 @@
-// A mass on a texture that is stiffer along the surface than the loop bears (F7): the lateral
-// coupling keeps it quiet.
+// A mass on a texture that is stiffer along the surface than the loop can render (F7): the lateral
+// coupling calms it.
 #include <algorithm>
 #include <cstdio>
 
 #include <gtest/gtest.h>
 
 #include "authoring/relief/relief_limits.h"
-#include "haptics/stages/coupling_stage.h"
+#include "haptics/law/coupling_stage.h"
 #include "stability/texture_support.h"
 
 namespace patina {
 namespace {
 
-// What the coupling is for.
+// The loop needs the coupling on these textures.
 TEST(TextureLoop, BuzzesOrLeavesWithoutTheLateralCoupling) {
   for (const Texture& texture : stiffTextures())
     for (const double stiffness : kStiffnesses) {
@@ -22,7 +22,7 @@ TEST(TextureLoop, BuzzesOrLeavesWithoutTheLateralCoupling) {
     }
 }
 
-TEST(TextureLoop, RestsAtAnyStiffnessByItselfInAHandAndWithJitter) {
+TEST(TextureLoop, RestsAtAnyStiffnessAloneInAHandAndWithJitter) {
   double worst = 0;
   for (const Texture& texture : stiffTextures())
     for (const double stiffness : kStiffnesses)
@@ -41,14 +41,15 @@ TEST(TextureLoop, RestsAtAnyStiffnessByItselfInAHandAndWithJitter) {
   std::printf("texture: at rest to %.2g m/s\n", worst);
 }
 
-// Also what is gentle under a light press: at 9.8 um rms, 500 N/m along the surface at 1 N.
-TEST(TextureLoop, RestsUnderAllThatTheServoGives) {
+// Textures that are gentle under a light press count too: at 9.8 um rms, 500 N/m along the surface
+// at 1 N.
+TEST(TextureLoop, RestsUnderTheServosMaxForce) {
   const double press = 3.2, limit = 3.3;
   for (const double rms : {2e-6, 2.9e-6, 3.1e-6, 9.8e-6, 50e-6})
     for (const double stiffness : kStiffnesses) {
       Scene scene = automatic(stiffness);
       scene.haptics.force_limit = limit;
-      const FeltObject object = rough(rms, scene);
+      const HapticObject object = rough(rms, scene);
       const auto snapshot = compileStages(scene, planeField(kVoxel, 96), std::span(&object, 1));
       SimulationSpec spec = comesDown(scene);
       spec.press = press;
@@ -60,21 +61,21 @@ TEST(TextureLoop, RestsUnderAllThatTheServoGives) {
     }
 }
 
-// A groove in the image, pressed at its bottom, where the slope is none and on both sides steep:
+// A groove in the image, pressed at its bottom, where the slope is zero, and steep on both sides:
 // just too gentle for the coupling, just steep enough, and steeper.
 TEST(TextureLoop, RestsInAGrooveOfTheImage) {
   const double high = 0.3e-3, limit = 3.3, texel = Slab::kSide / 1024;
   const auto uvs = std::make_shared<const CornerUvs>(uvsFromAbove(*fineSlab().mesh, Slab::kSide));
-  const BendMap bends(fineSlab().mesh, uvs, 1024, 1024);
-  const double gentle = texel * steadyBend(limit, DeviceModel{});
+  const CurvatureMap bends(fineSlab().mesh, uvs, 1024, 1024);
+  const double gentle = texel * maxStableCurvature(limit, DeviceModel{});
   for (const double slope : {0.95 * gentle, 1.05 * gentle, 0.2, 1.0, 3.0}) {
     const auto image = reliefImage(1024, [=](double u, double) {
       return std::min(1.0, std::abs(Slab::kSide * (u - 0.5)) * slope / high);
     });
-    FeltObject object = feltRelief(fineSlab().faces, image, high, kReliefOvershoot);
-    const std::vector<float> bend = bends.byTile(*image);
-    object.bend = high * static_cast<double>(*std::max_element(bend.begin(), bend.end()));
-    EXPECT_NEAR(object.bend, slope / texel, 1e-3 * slope / texel); // between two texels
+    HapticObject object = hapticRelief(fineSlab().faces, image, high, kReliefOvershoot);
+    const std::vector<float> bend = bends.perTile(*image);
+    object.max_curvature = high * static_cast<double>(*std::max_element(bend.begin(), bend.end()));
+    EXPECT_NEAR(object.max_curvature, slope / texel, 1e-3 * slope / texel); // between two texels
     for (const double stiffness : {300.0, 490.0, 700.0, 1000.0, 2000.0})
       for (const double aside : {0.0, 20e-6, 0.1e-3}) {
         Scene scene = automatic(stiffness);
@@ -94,8 +95,8 @@ TEST(TextureLoop, RestsInAGrooveOfTheImage) {
   }
 }
 
-// k_l and B are planned from the device: heavy and light, quick and late.
-TEST(TextureLoop, CalmsDownOnAnyDeviceThatDamps) {
+// k_l and B are planned from the device: heavy and light, with short and long delay.
+TEST(TextureLoop, CalmsDownOnAnyDampedDevice) {
   Progress progress;
   for (const double mass : {0.02, 0.1, 0.5})
     for (const double damping : {0.1, 0.5, 5.0})
@@ -104,7 +105,7 @@ TEST(TextureLoop, CalmsDownOnAnyDeviceThatDamps) {
           for (const double amplitude : {50e-6, 200e-6}) {
             Scene scene = automatic(1000);
             scene.device_model = DeviceModel{mass, damping, 0, 0, rate, delay};
-            const FeltObject object = waves(amplitude, true);
+            const HapticObject object = waves(amplitude, true);
             const auto snapshot = compileStages(scene, fineSlab().field, std::span(&object, 1));
             SimulationSpec spec = comesDown(scene);
             spec.press = 0.5;
@@ -113,16 +114,15 @@ TEST(TextureLoop, CalmsDownOnAnyDeviceThatDamps) {
             const std::string what = "m " + std::to_string(mass) + " b " + std::to_string(damping) +
                                      " rate " + std::to_string(rate) + " n " +
                                      std::to_string(delay);
-            EXPECT_TRUE(run.verdict == Verdict::kAtRest || run.verdict == Verdict::kCalmingDown)
+            EXPECT_TRUE(run.verdict == Verdict::kAtRest || run.verdict == Verdict::kDecaying)
                 << what << ": " << run.rms_velocity << ", early " << run.rms_early;
             EXPECT_EQ(run.fault_ticks, 0u) << what;
           }
 }
 
-// An encoder alone lets nothing rest that is stiffer than nothing: between two of its steps there
-// is no force, and the tip wanders from one to the other, on a plane too. That is as still as it
-// gets.
-TEST(TextureLoop, WithAnEncoderAndJitterItStaysWithinThreeSteps) {
+// An encoder alone lets nothing stiff rest: between two of its steps there is no force, and the
+// tip wanders from one to the other, on a plane too. This is its quietest state.
+TEST(TextureLoop, StaysWithinThreeStepsWithAnEncoderAndJitter) {
   const double step = 20e-6;
   double worst = 0;
   for (const Texture& texture : stiffTextures())
@@ -143,8 +143,8 @@ TEST(TextureLoop, WithAnEncoderAndJitterItStaysWithinThreeSteps) {
   std::printf("texture: with an encoder of 20 um within %.3g um\n", 1e6 * worst);
 }
 
-// 2.2: the dry friction of a device locks it.
-TEST(TextureLoop, WithAnEncoderAndDryFrictionItRests) {
+// 2.2: the device's dry friction locks it.
+TEST(TextureLoop, RestsWithAnEncoderAndDryFriction) {
   for (const Texture& texture : stiffTextures())
     for (const double stiffness : kStiffnesses) {
       Scene scene = automatic(stiffness);
@@ -157,7 +157,7 @@ TEST(TextureLoop, WithAnEncoderAndDryFrictionItRests) {
     }
 }
 
-// Where the surface itself turns: in a bowl, and on a ball, where a hand must keep the tip.
+// On curved surfaces: in a bowl, and on a ball, where a hand must keep the tip.
 TEST(TextureLoop, RestsOnCurvedSurfaces) {
   struct Case {
     const char* name;
@@ -178,7 +178,7 @@ TEST(TextureLoop, RestsOnCurvedSurfaces) {
     for (const double stiffness : {500.0, 2000.0}) {
       Scene scene = automatic(stiffness);
       scene.haptics.tip_radius = 1e-3;
-      const FeltObject object = rough(50e-6, scene);
+      const HapticObject object = rough(50e-6, scene);
       const auto snapshot = compileStages(scene, c.field, std::span(&object, 1));
       ASSERT_TRUE(snapshot->stabilisers.lateral);
       SimulationSpec spec = comesDown(scene);

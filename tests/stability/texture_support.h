@@ -1,4 +1,4 @@
-// Textures that are stiffer along the surface than the default loop bears, and a mass on them.
+// Textures that are stiffer along the surface than the default loop can render, and a mass on them.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "haptics/devices/simulation.h"
 #include "haptics/painted_fixture.h"
+#include "haptics/simulation/simulation.h"
 
 namespace patina {
 
@@ -17,23 +17,23 @@ inline constexpr double kWave = 1e-3;                           // [m]
 inline constexpr double kNumber = 2 * std::numbers::pi / kWave; // [1/m]
 inline constexpr double kVoxel = 0x1p-11;
 
-// Highest at the middle of the slab; `amplitude` (1 - cos).
-inline FeltObject waves(double amplitude, bool crossed = false) {
+// The height has its maximum at the middle of the slab; `amplitude` (1 - cos).
+inline HapticObject waves(double amplitude, bool crossed = false) {
   static const auto along = reliefImage(
       1024, [](double u, double) { return std::cos(kNumber * Slab::kSide * (u - 0.5)); });
   static const auto both = reliefImage(1024, [](double u, double v) {
     return 0.5 * (std::cos(kNumber * Slab::kSide * (u - 0.5)) +
                   std::cos(kNumber * Slab::kSide * (v - 0.5)));
   });
-  FeltObject object = feltRelief(fineSlab().faces, crossed ? both : along, amplitude);
-  object.bend = amplitude * kNumber * kNumber;
+  HapticObject object = hapticRelief(fineSlab().faces, crossed ? both : along, amplitude);
+  object.max_curvature = amplitude * kNumber * kNumber;
   return object;
 }
 
-inline FeltObject rough(double rms, const Scene& scene) {
-  return feltMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::roughness,
-                                  [=](const Vec3&) { return rms; }),
-                      scene);
+inline HapticObject rough(double rms, const Scene& scene) {
+  return hapticMaterial(*coveredMap(kVoxel, cube(12e-3), MaterialChannel::roughness,
+                                    [=](const Vec3&) { return rms; }),
+                        scene);
 }
 
 inline Scene automatic(double stiffness) {
@@ -50,7 +50,7 @@ inline Scene bare(double stiffness) {
 
 struct Texture {
   const char* name;
-  std::function<FeltObject(const Scene&)> on;
+  std::function<HapticObject(const Scene&)> on;
   Field field;
 };
 inline std::vector<Texture> stiffTextures() {
@@ -65,7 +65,7 @@ inline constexpr double kStiffnesses[] = {200, 500, 1000, 2000};
 
 inline std::shared_ptr<const HapticSnapshot> compiledOn(const Texture& texture,
                                                         const Scene& scene) {
-  const FeltObject object = texture.on(scene);
+  const HapticObject object = texture.on(scene);
   return compileStages(scene, texture.field, std::span(&object, 1));
 }
 
@@ -74,7 +74,7 @@ inline bool hasLateral(const HapticSnapshot& snapshot) {
                      [](const StageInfo& stage) { return stage.name == "lateral coupling"; });
 }
 
-// A mass under 1 N that comes down off every line of symmetry.
+// A mass under 1 N that starts off every line of symmetry.
 inline SimulationSpec comesDown(const Scene& scene) {
   SimulationSpec spec;
   spec.device = *scene.device_model;

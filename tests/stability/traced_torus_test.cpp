@@ -1,12 +1,12 @@
-// T-K13e: what a magnetic surface is for. A hand that trembles traces a torus; with the magnet it
-// stays on it for more of the time.
+// T-K13e: purpose of a magnetic surface. A trembling hand traces a torus; with the magnet it stays
+// on it for more of the time.
 #include <cmath>
 #include <cstdio>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/shapes.h"
 #include "haptics/contact_fixture.h"
 #include "support/constants.h"
@@ -20,11 +20,11 @@ constexpr double kMajor = 0.03, kMinor = 0.01; // [m]
 constexpr double kMass = 0.1;                  // [kg], device and hand
 constexpr double kHandStiffness = 100, kHandDamping = 4;
 constexpr double kNoise = 2;     // [N], rms of the force across the path
-constexpr double kTremor = 0.05; // [s], over which it forgets itself
+constexpr double kTremor = 0.05; // [s], correlation time
 constexpr double kLaps = 3, kLap = 4;
 
 struct Traced {
-  double contact = 0, near = 0; // shares of the time: on the surface; that, or held by the pull
+  double contact = 0, near = 0; // shares of the time: on the surface; on it or held by the pull
 };
 
 // The hand's own spring moves along the top of the torus, at rest on its surface.
@@ -61,7 +61,7 @@ Traced traced(const HapticSnapshot& snapshot, unsigned seed) {
   return result;
 }
 
-TEST(TracedTorus, AMagnetKeepsATremblingHandOnTheSurface) {
+TEST(TracedTorus, MagnetKeepsATremblingHandOnTheSurface) {
   FieldSpec spec;
   spec.resolution = 120;
   spec.band = 12;

@@ -1,4 +1,4 @@
-// A mesh put elsewhere or turned inside out.
+// A mesh moved or turned inside out.
 #pragma once
 
 #include <utility>

@@ -1,4 +1,4 @@
-// Numbers that many tests name.
+// Constants that many tests use.
 #pragma once
 
 #include <limits>
@@ -8,6 +8,6 @@ namespace patina::test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPeriod = 1e-3; // of the servo [s]
+constexpr double kPeriod = 1e-3; // period of the servo [s]
 
 } // namespace patina::test

@@ -1,4 +1,4 @@
-// An emulated probe on an emulated bus, in simulated time: reads let it pass.
+// An emulated probe on an emulated bus, in simulated time: reads advance it.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 
 namespace patina::test {
 
-// What happens beside the packets.
+// Events and times of the bus besides the packets.
 struct ProbeBus {
   double now = 0;                              // [s], true time
   double gone_at = 1e300;                      // [s]
   double stall_from = 1e300, stall_to = 1e300; // reads are refused between [s]
   double late = 125e-6,
-         jitter = 0; // least delay of a packet, and the mean of what comes on top [s]
+         jitter = 0; // minimum delay of a packet, and the mean of the additional one [s]
   UsbResult claim = UsbResult::ok, read = UsbResult::ok, describe = UsbResult::ok;
-  bool streams = true; // when it is asked to
+  bool streams = true; // on request
   int starts = 0, stops = 0;
-  std::size_t given = 0, lost = 0; // packets that reads gave, and that were lost before the last
+  std::size_t given = 0, lost = 0; // packets read, and lost before the last
 };
 
 class EmulatedProbeUsb final : public UsbTransport {
@@ -35,7 +35,7 @@ class EmulatedProbeUsb final : public UsbTransport {
     if (request.request_type != 0x41 || request.request != 2) return {UsbResult::stall, 0};
     on_ = bus_.streams && request.value == 1;
     ++(request.value == 1 ? bus_.starts : bus_.stops);
-    probe_.until(bus_.now, [](ProbePacket, double) {}); // what it measured meanwhile nobody has
+    probe_.until(bus_.now, [](ProbePacket, double) {}); // packets measured meanwhile are dropped
     if (on_) probe_.start();
     waiting_.clear();
     return {};
@@ -51,7 +51,7 @@ class EmulatedProbeUsb final : public UsbTransport {
   UsbCount write(std::uint8_t, std::span<const std::byte>, unsigned) noexcept override {
     return {UsbResult::stall, 0};
   }
-  // As on a bus: ends when full, or when its time is up.
+  // A read ends when full, or when its time is up, as on a bus.
   UsbCount read(std::uint8_t endpoint, std::span<std::byte> data,
                 unsigned timeout_ms) noexcept override {
     if (endpoint != 0x81) return {UsbResult::stall, 0};

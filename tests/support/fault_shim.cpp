@@ -1,12 +1,11 @@
-// Preloaded into a program (LD_PRELOAD), it makes one call that changes the disk fail. In the
-// environment:
-//   PATINA_FAULT        enospc, eio, eintr, short (half is written), kill, full (enospc from then
-//   on) PATINA_FAULT_AT     which call, counted from 1; absent: none PATINA_FAULT_UNDER  absolute
-//   folder; calls on files elsewhere do not count PATINA_FAULT_MARK   file that is made when the
-//   fault happens PATINA_NO_FLUSH     flushing does nothing: a program may die here, but not the
-//   machine
-//   PATINA_FAULT_READS  reads count and fail, too
-//   PATINA_FAULT_EARLY  an interrupt (Ctrl-C) before main()
+// Preloaded into a program (LD_PRELOAD), it makes one call that changes the disk fail. Variables of
+// the environment: PATINA_FAULT is enospc, eio, eintr, estale, enolck, short (half is written),
+// kill, or full (enospc from then on). PATINA_FAULT_AT is the number of the failing call from 1;
+// absent: none. PATINA_FAULT_UNDER is an absolute folder; calls on files elsewhere do not count.
+// PATINA_FAULT_MARK is a file that is made when the fault happens. PATINA_NO_FLUSH turns flushing
+// off: the program may die, but not the machine. PATINA_FAULT_READS includes reads, and
+// PATINA_FAULT_WIDER opening to write, locking and removing. PATINA_NO_LOCKS refuses each flock, as
+// a file system without locks does. PATINA_FAULT_EARLY interrupts (Ctrl-C) before main().
 #include <cerrno>
 #include <cstdarg>
 #include <cstdlib>
@@ -14,15 +13,17 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <string>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
+#include <utility>
 
 namespace {
 
-enum class Call { create, write, flush, rename, cut, read };
+enum class Call { create, write, flush, rename, cut, read, other };
 
-// Read anew each time: the library may be called before any constructor of its own has run.
+// Reads the setting on each call: the library may be called before any constructor of its own.
 const char* setting(const char* name) {
   const char* value = std::getenv(name);
   return value ? value : "";
@@ -71,8 +72,16 @@ Verdict judge(Call call) {
   if (fault == "kill") syscall(SYS_kill, getpid(), 9);
   if (fault == "short") return Verdict::half;
   full = fault == "full";
-  errno = fault == "eio" ? EIO : fault == "eintr" ? EINTR : ENOSPC;
+  errno = ENOSPC;
+  constexpr std::pair<const char*, int> kCodes[] = {
+      {"eio", EIO}, {"eintr", EINTR}, {"estale", ESTALE}, {"enolck", ENOLCK}};
+  for (const auto& [name, code] : kCodes)
+    if (fault == name) errno = code;
   return Verdict::fail;
+}
+
+template <typename File> bool refuses(File file) {
+  return *setting("PATINA_FAULT_WIDER") && isUnder(file) && judge(Call::other) == Verdict::fail;
 }
 
 template <typename Function> Function next(const char* name) {
@@ -100,6 +109,8 @@ int open(const char* path, int flags, ...) {
     mode = va_arg(rest, mode_t);
     va_end(rest);
     if (isUnder(path) && judge(Call::create) == Verdict::fail) return -1;
+  } else if ((flags & O_ACCMODE) != O_RDONLY && refuses(path)) {
+    return -1;
   }
   return next<int (*)(const char*, int, ...)>("open")(path, flags, mode);
 }
@@ -144,5 +155,21 @@ int rename(const char* from, const char* to) noexcept {
 int ftruncate(int fd, off_t size) noexcept {
   if (isUnder(fd) && judge(Call::cut) == Verdict::fail) return -1;
   return next<int (*)(int, off_t)>("ftruncate")(fd, size);
+}
+
+int flock(int fd, int operation) noexcept {
+  if (*setting("PATINA_NO_LOCKS")) {
+    errno = ENOLCK;
+    return -1;
+  }
+  return refuses(fd) ? -1 : next<int (*)(int, int)>("flock")(fd, operation);
+}
+
+int unlink(const char* path) noexcept {
+  return refuses(path) ? -1 : next<int (*)(const char*)>("unlink")(path);
+}
+
+int remove(const char* path) noexcept {
+  return refuses(path) ? -1 : next<int (*)(const char*)>("remove")(path);
 }
 }

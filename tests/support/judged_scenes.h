@@ -1,4 +1,4 @@
-// All scenes that a contact method must do on: those made by code, and shared meshes where present.
+// All scenes for the comparison of contact methods: generated ones, and shared meshes if present.
 #pragma once
 
 #include <filesystem>

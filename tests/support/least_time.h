@@ -1,15 +1,14 @@
-// Limits on time that hold on any machine, whatever else it does: what code costs is compared with
-// a reference kernel beside it in the same run, and the ratio is judged.
+// Limits on time that hold on any machine under any load: the time of the code is compared with
+// that of a reference kernel in the same run, and the ratio is judged.
 //
-// The least time counts: other programs can only add. Works of some 100 us and more take turns and
-// are timed by the thread's own processor time, which leaves out what others had of the core. Steps
-// shorter than that are timed by the clock, and each step of a path keeps the least of its repeats:
-// a core that is taken away falls on another step each time, what the code does on the same one.
-// Both are repeated in a row, within one slice of the scheduler's: the first call brings back to
-// the cache what others have driven out of it, where it is while a scene is felt.
+// The minimum time counts, because other programs can only add to it. Works of some 100 us and more
+// take turns and are timed by the thread's own processor time, which excludes other threads.
+// Shorter steps are timed by the clock, and each step of a path keeps the minimum of its repeats:
+// preemption hits another step each time. Repeats follow one another within one time slice of the
+// scheduler: the first call refills the cache, as it is filled while a scene is felt.
 //
-// There is always a verdict. Sanitizers multiply times by what they please: a PATINA_TIMED_TEST is
-// not part of their builds.
+// There is always a verdict. Sanitizers multiply times by arbitrary factors: their builds leave out
+// each PATINA_TIMED_TEST.
 #pragma once
 
 #include <algorithm>
@@ -52,16 +51,16 @@ inline double threadSeconds() {
 
 using Work = std::function<void()>;
 
-// The least thread time [s] of one call of each work. Rounds go on until `settled` of them in a row
-// had the core to themselves and found nothing shorter by a hundredth, but not beyond
-// `most_seconds`, save for three rounds; ten times either in the long form.
-// What a work gives to other threads is not counted: see OneThread.
-inline std::vector<double> leastSeconds(const std::vector<Work>& works, int settled = 10,
-                                        double most_seconds = 10) {
-  constexpr double kAlone = 1.05; // of the thread's own time, by the clock
+// Minimum thread time [s] of one call of each work. Rounds go on until `settled` of them in a row
+// had the processor to themselves and found nothing shorter by a hundredth, but at most for
+// `max_seconds`, except for three rounds; ten times either in the long form. Work given to other
+// threads is not counted: see OneThread.
+inline std::vector<double> minSeconds(const std::vector<Work>& works, int settled = 10,
+                                      double max_seconds = 10) {
+  constexpr double kAlone = 1.05; // processor's share of the clock time, for an undisturbed thread
   std::vector<double> least(works.size(), std::numeric_limits<double>::infinity());
   settled = static_cast<int>(longer(settled));
-  const double end = secondsOn(CLOCK_MONOTONIC) + static_cast<double>(longer(1)) * most_seconds;
+  const double end = secondsOn(CLOCK_MONOTONIC) + static_cast<double>(longer(1)) * max_seconds;
   int quiet = 0;
   for (int round = 0; round < 3 || (quiet < settled && secondsOn(CLOCK_MONOTONIC) < end); ++round) {
     const double clock = secondsOn(CLOCK_MONOTONIC), own = threadSeconds();
@@ -80,14 +79,14 @@ inline std::vector<double> leastSeconds(const std::vector<Work>& works, int sett
   return least;
 }
 
-// The least time of each step of a path.
+// The minimum time of each step of a path.
 class LeastSteps {
  public:
   explicit LeastSteps(std::size_t count)
       : seconds_(count, std::numeric_limits<double>::infinity()) {}
 
-  // step(state, i) for i = 0 .. count - 1, several times for each leg of the path, every time from
-  // the state at the leg's beginning. May be called again; the least of all calls is kept.
+  // Calls step(state, i) for i = 0 .. count - 1, several times for each leg of the path, every time
+  // from the state at the leg's beginning. May be called again; the minimum of all calls is kept.
   template <class State, class Step> void walk(State state, const Step& step) {
     for (std::size_t leg = 0; leg < seconds_.size(); leg += kLeg) {
       const std::size_t end = std::min(leg + kLeg, seconds_.size());
@@ -99,7 +98,7 @@ class LeastSteps {
       }
     }
   }
-  // [s], over the steps, without the reading of the clock.
+  // Returns the sum over the steps [s], without the clock's own time.
   Percentiles seconds() const {
     std::vector<double> own = seconds_;
     for (double& each : own) each = std::max(0.0, each - clock_);
@@ -121,8 +120,8 @@ class LeastSteps {
   double clock_ = std::numeric_limits<double>::infinity();
 };
 
-// What the code is compared with: kernels that wait for what they made before, as a tick does, so
-// that neither a wide nor a narrow processor is favoured by much.
+// The reference: kernels whose steps depend on earlier results, as in a tick, so that neither a
+// wide nor a narrow processor has much advantage.
 class Reference {
  public:
   Reference() : next_(kLoads), from_(kCopied), to_(kCopied) {
@@ -137,14 +136,14 @@ class Reference {
     for (int i = 0; i < 8; ++i) at_ = next_[at_];
     double x = 1 + 1e-9 * at_;
     for (int i = 0; i < 40; ++i) x = 0.99 * x + 0.01;
-    at_ = next_[at_ ^ static_cast<std::uint32_t>(x > 2)]; // the next one waits for this one
+    at_ = next_[at_ ^ static_cast<std::uint32_t>(x > 2)]; // the next load depends on this one
     kept_ = x;
   }
   void ticks(int count) {
     for (int i = 0; i < count; ++i) tick();
   }
-  // What a dab or a bake does much of: arithmetic that waits for memory, and memory that is copied
-  // (16 MB).
+  // The main work of a dab or a bake: arithmetic that waits for memory, and a copy of memory (16
+  // MB).
   void bake() {
     ticks(50000);
     std::memcpy(to_.data(), from_.data(), kCopied);
@@ -159,8 +158,8 @@ class Reference {
   volatile double kept_ = 0;
 };
 
-// Shows the times and whether their ratio is at most `most`:
-//   EXPECT_TRUE(within("tick", tick, reference, 2.5));
+// Prints the times and returns whether their ratio is at most `most`: EXPECT_TRUE(within("tick",
+// tick, reference, 2.5));
 inline testing::AssertionResult within(const std::string& name, double seconds, double reference,
                                        double most) {
   const double ratio = seconds / reference;

@@ -1,4 +1,4 @@
-// The long form of tests that measure or wander.
+// The long form of tests that measure or use random paths.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// A mesh as triangles that share no corner, each put a little off its place.
+// A mesh as triangles without shared corners, each slightly displaced.
 #pragma once
 
 #include <random>
@@ -7,7 +7,7 @@
 
 namespace patina::test {
 
-// Every triangle is shifted by `shift` [m] in a direction of its own; with `corners` every corner.
+// Shifts every triangle by `shift` [m] in a direction of its own; with `corners` every corner.
 inline TriangleMesh loose(const TriangleMesh& mesh, double shift, bool corners = false) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;

@@ -1,5 +1,5 @@
-// A USB device that takes what it is told and answers no request: what is read and written is up to
-// whoever derives.
+// A USB device that accepts control transfers out and answers none in; derived classes implement
+// reads and writes.
 #pragma once
 
 #include "usb/usb_transport.h"

@@ -5,10 +5,10 @@
 
 namespace patina::test {
 
-// Outside the grid or in a block that is not stored: +-kBeyondBand.
+// Returns +-kBackground outside the grid or in a block that is not stored.
 inline float phiAt(const SurfaceField& field, int i, int j, int k) {
-  const SurfaceField::Place place = field.placeOf(i, j, k);
-  if (place.slot < 0) return phiBeyond(place.slot);
+  const SurfaceField::NodeAddress place = field.placeOf(i, j, k);
+  if (place.slot < 0) return backgroundOf(place.slot);
   return field.distance[static_cast<std::size_t>(place.slot)]->phi()[place.index];
 }
 

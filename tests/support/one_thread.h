@@ -1,4 +1,5 @@
-// The calling thread does all the work itself while this lives, so that its own time is all of it.
+// Makes the calling thread do all the work itself while this lives, so that its own time covers all
+// of it.
 #pragma once
 
 #include <tbb/global_control.h>

@@ -1,10 +1,10 @@
-// Where OpenCV sees a point: an oracle that shares no code with ours.
+// OpenCV's projection of a point: an oracle that shares no code with ours.
 #pragma once
 
 #include <opencv2/calib3d.hpp>
 #include <vector>
 
-#include "acquisition/camera.h"
+#include "acquisition/values/camera.h"
 
 namespace patina::test {
 

@@ -6,13 +6,13 @@
 
 #include <opencv2/videoio.hpp>
 
-#include "acquisition/orientation.h"
+#include "acquisition/values/orientation.h"
 #include "core/file.h"
 #include "support/fresh_folder.h"
 
 namespace patina::test {
 
-// What is stored where the picture as shown is `shown`.
+// Returns the picture to store so that it is shown as `shown` at this EXIF orientation.
 inline GreyFrame storedAs(const GreyFrame& shown, int orientation) {
   // Quarter turns undo one another, the other six themselves.
   GreyFrame stored = turned(shown, orientation == 6 ? 8 : orientation == 8 ? 6 : orientation);
@@ -71,7 +71,7 @@ inline std::string jpegOf(const GreyFrame& image) {
              : bytes.substr(begin, end + 2 - begin);
 }
 
-// With EXIF's orientation as a phone's camera writes it.
+// Writes EXIF's orientation like a phone's camera.
 inline void writeJpeg(const std::filesystem::path& path, const GreyFrame& image, int orientation) {
   const std::string jpeg = jpegOf(image);
   std::string exif = std::string("Exif\0\0", 6) + std::string("II*\0\x08\0\0\0\x01\0", 10) +

@@ -1,5 +1,5 @@
-// An X server of the test program's own, so that no program's pictures depend on what others do to
-// a server that they share.
+// An X server of the test program's own, so that its pictures do not depend on other programs on a
+// shared server.
 #pragma once
 
 #include <cstdlib>
@@ -16,10 +16,10 @@
 
 namespace patina::test {
 
-// An Xvfb that is started; it ends with this value, and with the thread that made it.
+// A running Xvfb; it ends with this value, and with the thread that made it.
 class XServer {
  public:
-  // Absent: a number that is free, which the server looks for itself.
+  // Absent: the server searches for a free number.
   explicit XServer(std::optional<int> number = std::nullopt) {
     int said[2];
     if (pipe2(said, O_CLOEXEC) != 0) return;
@@ -68,12 +68,12 @@ class XServer {
   std::optional<int> number_;
 };
 
-// Whether pictures can be drawn: from the first call on DISPLAY names a server of this program's
-// own, or, where Xvfb is not installed, the one that the environment names. In the main thread.
+// Returns whether pictures can be drawn: from the first call on DISPLAY names a server of this
+// program's own, or, if Xvfb is not installed, that of the environment. Call it in the main thread.
 inline bool hasDisplay() {
   static const bool has = [] {
     for (int i = 0; i < 3; ++i) {
-      // Lives as long as the program: whoever has a connection to it may close that last of all.
+      // The server lives as long as the program: a connection to it may be closed last of all.
       auto server = std::make_unique<XServer>();
       if (const auto number = server->number()) {
         setenv("DISPLAY", (":" + std::to_string(*number)).c_str(), 1);

@@ -1,4 +1,4 @@
-// Objects painted by a formula, without a brush: what a picture of them must show is known.
+// Objects painted by a formula, without a brush, so that their pictures can be predicted.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace patina {
 
-// Values at the point of the surface that each texel shows, gutters included.
+// Sets each texel, gutters included, to the value at its point of the surface.
 inline std::shared_ptr<const TiledImage>
 imageOf(const TriangleMesh& mesh, const CornerUvs& uvs, int size, int channels,
         const std::function<void(const Vec3&, float*)>& value) {
@@ -57,13 +57,13 @@ inline void setPaint(SceneObject& object, ObjectPaint paint) {
   object.paint = std::make_shared<const ObjectPaint>(std::move(paint));
 }
 
-// Premultiplied.
+// The values are premultiplied.
 inline void ink(float* rgba, const Vec3& color, double cover = 1) {
   for (int c = 0; c < 3; ++c) rgba[c] = static_cast<float>(cover * color[c]);
   rgba[3] = static_cast<float>(cover);
 }
 
-// `value` with weight 1 at every node of the box for which `where` holds.
+// Returns `value` with weight 1 at every node of the box where `where` is true.
 inline std::shared_ptr<const MaterialMap>
 materialOf(const Box3& box, double voxel, MaterialChannel channel,
            const std::function<double(const Vec3&)>& value,

@@ -1,4 +1,4 @@
-// Scenes with paint, strokes and how they compare, for tests and their helper programs.
+// Scenes with paint, strokes, and their comparison, for tests and their helper programs.
 #pragma once
 
 #include <random>
@@ -50,7 +50,7 @@ inline MaterialMap paintedMaterial(unsigned seed) {
   return map;
 }
 
-// As charts would lie: every triangle in a place of its own.
+// The layout is like one of charts: every triangle has a place of its own.
 inline CornerUvs someLayout(std::size_t triangles, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> at(0, 1);

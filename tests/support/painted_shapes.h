@@ -1,18 +1,18 @@
-// Material maps made by hand, and a slab that an image lies on.
+// Material maps made by hand, and a slab with an image.
 #pragma once
 
 #include <cmath>
 #include <functional>
 #include <memory>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/shapes.h"
 #include "scene/paint/material_map.h"
 #include "scene/paint/relief_surface.h"
 
 namespace patina {
 
-// A map whose nodes within `box` [m] hold value(p) with weight 1 (paint that covers).
+// Returns a map whose nodes within `box` [m] hold value(p) with weight 1 (paint that covers).
 inline std::shared_ptr<MaterialMap> coveredMap(double voxel, const Box3& box,
                                                MaterialChannel channel,
                                                const std::function<double(const Vec3&)>& value,
@@ -31,8 +31,7 @@ inline std::shared_ptr<MaterialMap> coveredMap(double voxel, const Box3& box,
   return map;
 }
 
-// A box of 40 x 40 x 12 mm whose top is z = 0, with the image laid over it from above, and its
-// field.
+// A box of 40 x 40 x 12 mm whose top is z = 0, with the image mapped from above, and its field.
 struct Slab {
   static constexpr double kSide = 0.04;
   std::shared_ptr<const TriangleMesh> mesh;
@@ -62,7 +61,7 @@ inline Slab slab(double voxel, int cells = 1, double band = 8) {
   return made;
 }
 
-// One of half a millimetre's voxel, made once a program.
+// Returns the one with voxels of half a millimetre, made once a program.
 inline const Slab& fineSlab() {
   static const Slab made = slab(0.5e-3, 1, 14);
   return made;

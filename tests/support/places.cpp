@@ -1,4 +1,4 @@
-// The only test source that knows its build tree: all others compile alike in every tree.
+// The only test source that depends on its build tree: all others compile equally in every tree.
 #include "support/places.h"
 
 #include <functional>

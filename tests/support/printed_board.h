@@ -1,15 +1,15 @@
-// ChArUco boards as they are printed and seen.
+// Pictures of ChArUco boards, printed and photographed.
 #pragma once
 
 #include <random>
 
 #include "acquisition/calibration/board.h"
-#include "acquisition/simulation/frame_renderer.h"
+#include "acquisition/simulation/simulated_frames.h"
 
 namespace patina::test {
 
-// As printed markers: its white squares carry codes, its black ones are markers without any. Of
-// OpenCV's layout since 4.6, or that before, whose top left square is white where the number of
+// A printed board: its white squares carry codes, its black ones are markers without any. The
+// layout is OpenCV's since 4.6, or the earlier one, whose top left square is white if the number of
 // rows is even.
 inline std::vector<PrintedMarker> printedBoard(const Board& board, bool white_first = false) {
   const MarkerFamily& family = markerFamily(board.family);
@@ -30,7 +30,8 @@ inline std::vector<PrintedMarker> printedBoard(const Board& board, bool white_fi
   return printed;
 }
 
-// Its middle before the camera at `distance`, tilted by up to 0.5, moved aside by a tenth [m, rad].
+// A pose in front of the camera at `distance`, tilted by up to 0.5, moved aside by a tenth [m,
+// rad].
 inline Pose boardPose(const Board& board, std::mt19937& random, double distance) {
   std::uniform_real_distribution<double> unit(-1, 1);
   const double a = unit(random), b = unit(random), c = unit(random), x = unit(random),

@@ -1,4 +1,4 @@
-// A relief image from its function.
+// A relief image from a function.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@ namespace patina::test {
 
 using Height = std::function<double(double u, double v)>;
 
-// g at the texels' centres; tiles where it is 0 stay absent.
+// Evaluates g at the texels' centres; tiles where it is 0 stay absent.
 inline std::shared_ptr<TiledImage> reliefImage(int size, const Height& g) {
   auto image = std::make_shared<TiledImage>(size, size, 1);
   for (int j = 0; j < size; ++j)

@@ -14,12 +14,12 @@ inline Camera smallCamera() {
 inline Camera largeCamera() {
   return {1920, 1080, 1500, 1500, 955, 545, {-0.08, 0.03, 3e-4, -2e-4, 0}};
 }
-// The corners of its picture are bent inwards by a tenth.
+// Distortion moves the corners of its picture inwards by a tenth.
 inline Camera wideCamera() {
   return {800, 600, 420, 420, 410, 290, {-0.22, 0.06, -5e-4, 4e-4, -0.006}};
 }
 
-// As OpenCV's calibration with CALIB_RATIONAL_MODEL, THIN_PRISM_MODEL and TILTED_MODEL gives them.
+// A result of OpenCV's calibration with CALIB_RATIONAL_MODEL, THIN_PRISM_MODEL and TILTED_MODEL.
 inline Camera rationalCamera() {
   return {800, 600, 420, 424, 410, 290, {0.31, -0.05, 2e-4, -3e-4, 2e-3, 0.42, -0.05, 4e-3}};
 }
@@ -51,8 +51,8 @@ struct RenderedRig {
       out.push_back({marker, family->side, family->code[static_cast<std::size_t>(marker.id)]});
     return out;
   }
-  SeenRig track(const GreyFrame& image, const Pose* lately = nullptr) const {
-    return poseOf(findMarkers(image, books, &camera), markers, camera, lately, &image);
+  SeenRig track(const GreyFrame& image, const Pose* previous_pose = nullptr) const {
+    return poseOf(findMarkers(image, books, &camera), markers, camera, previous_pose, &image);
   }
 
   Camera camera;
@@ -76,6 +76,6 @@ inline Pose somePose(std::mt19937& random, double distance = 0.4, double tilt = 
   return pose;
 }
 
-inline const Vec3 kTip(0, 0, -0.12); // where the tip is in the probe's frame [m]
+inline const Vec3 kTip(0, 0, -0.12); // tip in the probe's frame [m]
 
 } // namespace patina::test

@@ -1,4 +1,4 @@
-// Scenes bit for bit: values, meshes, poses and paint.
+// Compares scenes bit for bit: values, meshes, poses and paint.
 #pragma once
 
 #include "scene/scene.h"

@@ -1,4 +1,4 @@
-// Times mean nothing under a sanitizer.
+// Whether a sanitizer is on, under which times mean nothing.
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -13,7 +13,7 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-// While it lives, what libraries of others lose is not counted.
+// Leaks of foreign libraries are not counted while it lives.
 class LeaksOfOthers {
  public:
 #if defined(__SANITIZE_ADDRESS__)

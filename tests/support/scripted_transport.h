@@ -1,4 +1,4 @@
-// A USB device that is a script: what it expects, one transfer after another, and what it answers.
+// A USB device by script: its expected transfers in order, and their answers.
 #pragma once
 
 #include <algorithm>
@@ -23,13 +23,13 @@ struct UsbStep {
   enum class Kind { claim, control_out, control_in, write, read };
   Kind kind = Kind::claim;
   int where = 0;        // interface, or endpoint
-  UsbRequest request{}; // of a control transfer
-  Bytes data{};         // that is expected, or answered
+  UsbRequest request{}; // request of a control transfer
+  Bytes data{};         // bytes to expect or to answer
   UsbResult result = UsbResult::ok;
 };
 
-// A call that the script does not foresee fails and is kept as complaint(); so does every call
-// after it. A device that is gone stays gone.
+// A call that is not in the script fails and is kept as complaint(); so does every call after it. A
+// removed device stays removed.
 class ScriptedTransport final : public UsbTransport {
  public:
   explicit ScriptedTransport(std::vector<UsbStep> steps) : steps_(std::move(steps)) {}

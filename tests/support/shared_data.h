@@ -1,4 +1,4 @@
-// Real data that does not ship with the program: tests that use it skip where it is absent.
+// Real data that does not ship with the program: tests that use it skip if it is absent.
 #pragma once
 
 #include <cstdlib>
@@ -9,7 +9,7 @@
 
 namespace patina::test {
 
-// Where the folder is named by PATINA_SHARED_DATA, or lies beside the source tree.
+// The folder is named by PATINA_SHARED_DATA, or lies beside the source tree.
 inline std::filesystem::path sharedData(const std::string& relative) {
   const char* folder = std::getenv("PATINA_SHARED_DATA");
   const std::filesystem::path root = folder ? folder : sourceFolder() / ".." / "shared" / "data";

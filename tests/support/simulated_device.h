@@ -1,12 +1,12 @@
-// A device that yields, and one that stands still.
+// A device that moves under the force, and one that stands still.
 #pragma once
 
-#include "haptics/devices/device.h"
-#include "haptics/devices/held_body.h"
+#include "haptics/device/device.h"
+#include "haptics/loop_model/zoh_body.h"
 
 namespace patina {
 
-// A point mass with viscous damping in a hand that pushes with a given force.
+// A point mass with viscous damping, pushed by a given force of the hand.
 struct SimulatedDeviceSpec {
   double mass = 0.1;    // [kg]
   double damping = 0.5; // [N s/m]
@@ -23,14 +23,14 @@ class SimulatedDevice final : public Device {
     for (int i = 0; i < 3; ++i) body_.axes[static_cast<std::size_t>(i)].v = spec.velocity[i];
   }
   DeviceState exchange(const Vec3& force, double dt) noexcept override {
-    body_.hold(force + hand_force_, dt);
+    body_.advance(force + hand_force_, dt);
     return {start_ + body_.position()};
   }
 
  private:
   Vec3 start_;
   Vec3 hand_force_;
-  HeldBody body_;
+  ZohBody body_;
 };
 
 class StillDevice final : public Device {

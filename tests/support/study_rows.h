@@ -1,4 +1,4 @@
-// What a row of a study says, by the name of its column.
+// Reads a study's row by the names of its columns.
 #pragma once
 
 #include <limits>
@@ -7,13 +7,13 @@
 
 #include <gtest/gtest.h>
 
-#include "app/studies/study.h"
+#include "app/studies/framework/studies.h"
 #include "core/progress.h"
 #include "core/work_precision.h"
 
 namespace patina::test {
 
-// The tables of a study's short form, made once a program.
+// Returns the tables of a study's short form, made once a program.
 template <auto Study> const std::vector<WorkPrecisionTable>& quickTables() {
   static const std::vector<WorkPrecisionTable> tables = [] {
     Progress progress;
@@ -22,7 +22,7 @@ template <auto Study> const std::vector<WorkPrecisionTable>& quickTables() {
   return tables;
 }
 
-// NaN, which no bound holds for, where there is no such column.
+// Returns NaN, which satisfies no bound, if there is no such column.
 inline double more(const WorkPrecisionRow& row, const std::string& column) {
   for (const auto& [name, value] : row.more)
     if (name == column) return value;
@@ -30,14 +30,14 @@ inline double more(const WorkPrecisionRow& row, const std::string& column) {
 }
 
 inline double knob(const WorkPrecisionRow& row, const std::string& column) {
-  for (const auto& [name, value] : row.knobs)
+  for (const auto& [name, value] : row.settings)
     if (name == column) return value.asNumber();
   ADD_FAILURE() << "no knob " << column;
   return std::numeric_limits<double>::quiet_NaN();
 }
 
 inline std::string word(const WorkPrecisionRow& row, const std::string& column) {
-  for (const auto& [name, value] : row.knobs)
+  for (const auto& [name, value] : row.settings)
     if (name == column) return value.asString();
   ADD_FAILURE() << "no knob " << column;
   return {};

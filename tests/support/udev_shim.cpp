@@ -1,4 +1,4 @@
-// libudev, as far as libusb asks it: of usbfs_shim.cpp, which moves the paths.
+// The part of libudev that libusb calls: for usbfs_shim.cpp, which moves the paths.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -8,7 +8,7 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
-#include "usb/usbfs_wire.h"
+#include "support/usbfs_wire.h"
 
 extern "C" {
 
@@ -107,7 +107,7 @@ int udev_monitor_get_fd(udev_monitor* it) {
   return it->fd;
 }
 udev_device* udev_monitor_receive_device(udev_monitor* it) {
-  alignas(inotify_event) char room[sizeof(inotify_event) + 16]; // of one: "1-126" takes 16
+  alignas(inotify_event) char room[sizeof(inotify_event) + 16]; // one event: "1-126" takes 16
   if (read(it->fd, room, sizeof room) < static_cast<ssize_t>(sizeof(inotify_event))) return nullptr;
   const auto* event = reinterpret_cast<const inotify_event*>(room);
   if (event->len == 0) return nullptr;

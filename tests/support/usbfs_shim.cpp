@@ -1,7 +1,7 @@
 // Preloaded into a program (LD_PRELOAD), it shows it the emulated bus in the folder that
-// PATINA_USBFS names (modules/usb/emulated_plug.h) in place of the kernel's: what libusb opens
-// under /sys/bus/usb and /dev/bus/usb, its ioctls on a node, its waiting; udev_shim.cpp beside it
-// has what libudev would tell it. libusb itself is the system's. A file `deaf` in the folder makes
+// PATINA_USBFS names (tests/support/emulated_plug.h) in place of the kernel's: the files that
+// libusb opens under /sys/bus/usb and /dev/bus/usb, its ioctls on a node, its waiting;
+// udev_shim.cpp replaces libudev. libusb itself is the system's. A file `deaf` in the folder makes
 // its waiting fail.
 #include <cerrno>
 #include <cstdarg>
@@ -26,7 +26,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "usb/usbfs_wire.h"
+#include "support/usbfs_wire.h"
 
 using patina::UsbfsMessage;
 
@@ -41,7 +41,7 @@ std::string folder() {
   return value ? value : "";
 }
 
-// Where the path really is.
+// Returns the real path.
 std::string moved(const char* path) {
   if (!path) return {};
   for (const char* bus : {"/sys/bus/usb", "/dev/bus/usb"})
@@ -56,7 +56,8 @@ bool isNode(const char* path) {
 // A node that is open.
 struct Node {
   explicit Node(int socket) : fd(socket) {}
-  bool pull() { // one message that has come; false: none has
+  // Takes one received message; returns false if there is none.
+  bool pull() {
     Done next_done;
     iovec parts[]{{&next_done.head, sizeof next_done.head}, {data, sizeof data}};
     msghdr message{};
@@ -81,7 +82,8 @@ struct Node {
     message.msg_iovlen = size > 0 ? 2 : 1;
     return sendmsg(fd, &message, MSG_NOSIGNAL) >= 0;
   }
-  int ask(UsbfsMessage::Kind kind, unsigned what) { // waits for the reply
+  // Sends a request and waits for the reply.
+  int ask(UsbfsMessage::Kind kind, unsigned what) {
     replied = 1;
     if (!tell({.kind = kind, .endpoint = static_cast<std::uint8_t>(what)})) return -ENODEV;
     while (replied == 1 && !gone)
@@ -103,7 +105,7 @@ struct Node {
   std::uint32_t last = 0;
   std::map<std::uint32_t, usbdevfs_urb*> sent;
   std::deque<Done> done;
-  char data[patina::kUsbfsMost];
+  char data[patina::kMaxUrbBytes];
 };
 
 struct Nodes {
@@ -111,7 +113,7 @@ struct Nodes {
   std::map<int, std::shared_ptr<Node>> open;
 };
 Nodes& nodes() {
-  static Nodes* const kNodes = new Nodes; // outlives whatever ends late
+  static Nodes* const kNodes = new Nodes; // it outlives threads that end late
   return *kNodes;
 }
 std::shared_ptr<Node> nodeOf(int fd) {
@@ -144,7 +146,7 @@ int openNode(const char* path) {
 
 int submit(Node& node, usbdevfs_urb* urb) {
   const auto size = static_cast<std::size_t>(urb->buffer_length);
-  if (size > patina::kUsbfsMost) return -EINVAL;
+  if (size > patina::kMaxUrbBytes) return -EINVAL;
   UsbfsMessage head{.kind = UsbfsMessage::submit,
                     .id = ++node.last,
                     .type = urb->type,
@@ -176,7 +178,7 @@ int reap(Node& node, usbdevfs_urb** to) {
   }
   if (!node.gone) return -EAGAIN;
   if (node.sent.empty()) return -ENODEV;
-  *to = node.sent.begin()->second; // as the kernel gives back what will never come
+  *to = node.sent.begin()->second; // the kernel, too, returns requests that will never complete
   (*to)->status = -ENODEV;
   (*to)->actual_length = 0;
   node.sent.erase(node.sent.begin());
@@ -215,7 +217,7 @@ int nodeCall(Node& node, unsigned long request, void* argument) {
     return node.ask(UsbfsMessage::clear_halt, number());
   case USBDEVFS_GETDRIVER:
     return -ENODATA;
-  case USBDEVFS_IOCTL: // to have the kernel's driver back
+  case USBDEVFS_IOCTL: // gives the device back to the kernel's driver
     return 0;
   case USBDEVFS_GET_SPEED:
     return 2;
@@ -303,7 +305,8 @@ int ioctl(int fd, unsigned long request, ...) noexcept {
                                                                                 argument);
 }
 
-// A node can be written to when an URB is done: here that is when there is something to read.
+// The kernel makes a node writable when an URB is done: here that is when there is something to
+// read.
 int poll(pollfd* fds, nfds_t count, int timeout) {
   std::vector<pollfd> asked(fds, fds + count);
   std::vector<bool> ours(count);

@@ -21,7 +21,7 @@ void report(const std::string& line) {
   std::fflush(stdout);
 }
 
-// The scene after so many events: told from any other by its values and its paint.
+// Returns the scene after so many events: its values and its paint distinguish it.
 Scene sceneAfter(Scene scene, std::uint64_t events) {
   scene.haptics.stiffness = 100 + static_cast<double>(events);
   scene.objects[0].paint =
@@ -51,7 +51,7 @@ void insist(const std::filesystem::path& folder) {
     try {
       journal.append(someStroke(20 - i, 100 + i));
     } catch (const FileError&) {
-      journal.append(UndoEvent{}); // shorter: it does not cover what the first may have left
+      journal.append(UndoEvent{}); // shorter: it does not cover the remains of the first
     }
   }
 }

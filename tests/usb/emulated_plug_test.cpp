@@ -1,5 +1,5 @@
-// What an emulated device does with what programs ask of it, by its socket's own messages.
-#include "usb/emulated_plug.h"
+// Tests the replies of an emulated device by the messages of its socket.
+#include "support/emulated_plug.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "core/descriptor.h"
 #include "core/error.h"
 #include "support/mute_transport.h"
-#include "usb/usbfs_wire.h"
+#include "support/usbfs_wire.h"
 
 namespace patina::test {
 namespace {
@@ -70,8 +70,8 @@ class EmulatedPlugs : public testing::Test {
   EmulatedUsb device_{.vendor = 1, .product = 2, .maker = "a", .name = "b", .endpoints = {{0x81}}};
 };
 
-TEST_F(EmulatedPlugs, ReadsThatWaitEndWithTheReleaseAndNothingTurnsAfterIt) {
-  const EmulatedPlug plug(folder_, device_, [] { return std::make_unique<Quiet>(false); });
+TEST_F(EmulatedPlugs, WaitingReadsEndWithTheReleaseAndNoTransferFollows) {
+  const EmulatedUsbDevice plug(folder_, device_, [] { return std::make_unique<Quiet>(false); });
   const Program program(plug.node());
   ASSERT_EQ(program.claim(), 0);
   program.tell({.kind = UsbfsMessage::submit, .id = 7, .type = 3, .endpoint = 0x81, .bytes = 8});
@@ -86,20 +86,20 @@ TEST_F(EmulatedPlugs, ReadsThatWaitEndWithTheReleaseAndNothingTurnsAfterIt) {
   EXPECT_LT(static_cast<double>(std::clock() - spent) / CLOCKS_PER_SEC, 0.1) << "it spins";
 }
 
-TEST_F(EmulatedPlugs, AClaimThatFailsHoldsTheDeviceFromNobodyElse) {
+TEST_F(EmulatedPlugs, FailedClaimBlocksNoOtherProgram) {
   bool held = true;
-  const EmulatedPlug plug(folder_, device_,
-                          [&] { return std::make_unique<Quiet>(std::exchange(held, false)); });
+  const EmulatedUsbDevice plug(folder_, device_,
+                               [&] { return std::make_unique<Quiet>(std::exchange(held, false)); });
   const Program first(plug.node()), second(plug.node());
   EXPECT_EQ(first.claim(), -EBUSY);
   EXPECT_EQ(second.claim(), 0);
   EXPECT_EQ(first.claim(), -EBUSY) << "the second has it";
 }
 
-TEST_F(EmulatedPlugs, ABusThatIsFullSaysSo) {
+TEST_F(EmulatedPlugs, FullBusIsReported) {
   for (int i = 2; i < 128; ++i)
     fs::create_directories(folder_ / "sys/bus/usb/devices" / ("1-" + std::to_string(i)));
-  EXPECT_THROW(EmulatedPlug(folder_, device_, [] { return std::make_unique<Quiet>(false); }),
+  EXPECT_THROW(EmulatedUsbDevice(folder_, device_, [] { return std::make_unique<Quiet>(false); }),
                FileError);
 }
 

@@ -10,11 +10,11 @@
 namespace patina {
 namespace {
 
-TEST(UsbBus, IsListedOrSaysWhyNot) {
+TEST(UsbBus, IsListedOrGivesTheCause) {
   try {
     for (const UsbDevice& device : listUsbDevices()) {
       EXPECT_FALSE(device.name.empty());
-      // Whoever may not open a device is told what to do.
+      // A device without permission comes with advice.
       EXPECT_TRUE(device.openable || !device.advice.empty()) << device.name;
       EXPECT_EQ(device.haptic, hapticName(device.vendor, device.product));
     }
@@ -23,10 +23,10 @@ TEST(UsbBus, IsListedOrSaysWhyNot) {
   }
 }
 
-TEST(UsbBus, WhatIsNotAttachedIsNotOpenedAndSaysWhatToDo) {
+TEST(UsbBus, RefusesADetachedDeviceWithAdvice) {
   UsbDevice none;
   none.vendor = 0x0403;
-  none.product = 0xffff; // a number that nobody was given
+  none.product = 0xffff; // an unassigned number
   none.name = "the device";
   none.bus = 250;
   try {
@@ -41,7 +41,7 @@ TEST(UsbBus, WhatIsNotAttachedIsNotOpenedAndSaysWhatToDo) {
   }
 }
 
-TEST(UsbBus, KnowsHapticDevicesAndNothingElse) {
+TEST(UsbBus, RecognisesHapticDevicesOnly) {
   EXPECT_EQ(hapticName(0x0403, 0xcb48), "Novint Falcon");
   EXPECT_EQ(hapticName(0x0403, 0x6001), ""); // the same chip maker's plain serial adapter
   EXPECT_EQ(hapticName(0x1451, 0x0402), "Force Dimension");
@@ -49,16 +49,16 @@ TEST(UsbBus, KnowsHapticDevicesAndNothingElse) {
   EXPECT_EQ(hapticName(0x1d6b, 0x0002), ""); // a root hub
 }
 
-TEST(UsbBus, AdviceForAMissingPermissionHoldsTheRule) {
-  const std::string advice = usbAdvice(UsbRefusal::permission, 0x0403, 0xcb48);
+TEST(UsbBus, AdviceForAMissingPermissionContainsTheRule) {
+  const std::string advice = usbAdvice(UsbAccessError::permission, 0x0403, 0xcb48);
   EXPECT_NE(advice.find("ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\""), std::string::npos);
   EXPECT_NE(advice.find("/etc/udev/rules.d/"), std::string::npos);
 }
 
 TEST(UsbBus, EveryRefusalHasItsOwnAdviceInOneLine) {
   std::vector<std::string> seen;
-  for (const UsbRefusal refusal :
-       {UsbRefusal::permission, UsbRefusal::held_by_driver, UsbRefusal::gone, UsbRefusal::other}) {
+  for (const UsbAccessError refusal : {UsbAccessError::permission, UsbAccessError::held_by_driver,
+                                       UsbAccessError::gone, UsbAccessError::other}) {
     const std::string advice = usbAdvice(refusal, 1, 2);
     EXPECT_EQ(advice.find('\n'), std::string::npos);
     EXPECT_EQ(std::count(seen.begin(), seen.end(), advice), 0);
@@ -66,11 +66,11 @@ TEST(UsbBus, EveryRefusalHasItsOwnAdviceInOneLine) {
   }
 }
 
-TEST(UsbBus, RulesOfUdevAreThoseThatShipAndKnowEachDevice) {
-  std::ifstream file(test::sourceFolder() / "data" / kUdevFile);
+TEST(UsbBus, UdevRulesEqualTheShippedOnesAndCoverEachDevice) {
+  std::ifstream file(test::sourceFolder() / "data" / "70-patina.rules");
   std::stringstream shipped;
   shipped << file.rdbuf();
-  EXPECT_EQ(shipped.str(), udevRules()) << "write it anew: patina devices --install-udev data";
+  EXPECT_EQ(shipped.str(), udevRules()) << "write it again: patina devices --install-udev data";
   EXPECT_NE(
       udevRules().find("ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\", TAG+=\"uaccess\"\n"),
       std::string::npos);

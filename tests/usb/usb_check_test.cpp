@@ -1,4 +1,4 @@
-// What is told of a device that is attached: its state, who has it, how fast it answers.
+// The report on an attached device: its state, the program that has it, its response time.
 #include "usb/usb_check.h"
 
 #include <gtest/gtest.h>
@@ -29,18 +29,18 @@ UsbCheck checked(std::vector<UsbStep> steps, int requests, const char* haptic = 
   return check;
 }
 
-TEST(UsbCheck, OfASoundDeviceSaysReadyAndHowLongItTakes) {
+TEST(UsbCheck, ReportsAnIntactDeviceAsReadyWithItsTime) {
   const UsbCheck check = checked({kStatus, kStatus, kStatus, {Kind::claim, 0}}, 3);
   EXPECT_EQ(stateText(check), "ready");
   EXPECT_EQ(check.round_trips.size(), 3u);
   for (const double us : check.round_trips) EXPECT_GE(us, 0);
 }
 
-TEST(UsbCheck, TakesNoInterfaceOfADeviceThatItDoesNotKnow) {
+TEST(UsbCheck, ClaimsNoInterfaceOfAnUnknownDevice) {
   EXPECT_EQ(stateText(checked({kStatus}, 1, "")), "ready");
 }
 
-TEST(UsbCheck, TellsWhatForbidsIt) {
+TEST(UsbCheck, ReportsTheCauseOfARefusal) {
   UsbStep silent = kStatus, gone = kStatus;
   silent.result = UsbResult::timeout;
   gone.result = UsbResult::gone;
@@ -51,9 +51,9 @@ TEST(UsbCheck, TellsWhatForbidsIt) {
   EXPECT_EQ(stateText(checked({kStatus, {Kind::claim, 0, {}, {}, UsbResult::failed}}, 1)),
             "in use by a driver or another program");
   UsbDevice closed;
-  closed.refusal = UsbRefusal::permission;
+  closed.refusal = UsbAccessError::permission;
   EXPECT_EQ(stateText(checkUsb(closed)), "no permission");
-  EXPECT_EQ(stateText({{}, UsbRefusal::held_by_driver, "spacenavd (813)"}),
+  EXPECT_EQ(stateText({{}, UsbAccessError::held_by_driver, "spacenavd (813)"}),
             "in use by spacenavd (813)");
 }
 

@@ -1,4 +1,4 @@
-// The seam between a driver and the bus, and the script that stands in for a device.
+// The interface between a driver and the bus, and the script that replaces a device.
 #include "support/scripted_transport.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using Kind = UsbStep::Kind;
 
 const UsbRequest kReset{0x40, 0, 1, 0};
 
-TEST(ScriptedTransport, PlaysItsScriptAndKnowsWhenItIsDone) {
+TEST(ScriptedTransport, PlaysItsScriptAndReportsItsEnd) {
   ScriptedTransport usb({{Kind::claim, 0},
                          {Kind::control_out, 0, kReset, bytes({7, 8})},
                          {Kind::control_in, 0, {0xc0, 5, 0, 2}, bytes({1, 2, 3})},
@@ -30,14 +30,14 @@ TEST(ScriptedTransport, PlaysItsScriptAndKnowsWhenItIsDone) {
   EXPECT_TRUE(usb.done()) << usb.complaint();
 }
 
-TEST(ScriptedTransport, NeverFillsMoreThanItIsGiven) {
+TEST(ScriptedTransport, NeverFillsMoreThanItsBuffer) {
   ScriptedTransport usb({{Kind::read, 0x81, {}, bytes({1, 2, 3})}});
   Bytes into = bytes({9, 9, 9});
   EXPECT_EQ(usb.read(0x81, std::span(into).first(2), 1).bytes, 2u);
   EXPECT_EQ(into, bytes({1, 2, 9}));
 }
 
-TEST(ScriptedTransport, AnErrorIsAValueAndKeepsTheBytesThatCame) {
+TEST(ScriptedTransport, ReturnsErrorsAsValuesAndKeepsReceivedBytes) {
   ScriptedTransport usb({{Kind::read, 0x81, {}, {}, UsbResult::timeout},
                          {Kind::control_out, 0, kReset, {}, UsbResult::stall},
                          {Kind::read, 0x81, {}, bytes({4}), UsbResult::timeout}});
@@ -50,18 +50,19 @@ TEST(ScriptedTransport, AnErrorIsAValueAndKeepsTheBytesThatCame) {
   EXPECT_TRUE(usb.done());
 }
 
-TEST(ScriptedTransport, WhatIsGoneStaysGone) {
+TEST(ScriptedTransport, StaysRemovedOnceRemoved) {
   ScriptedTransport usb({{Kind::write, 2, {}, bytes({1}), UsbResult::gone}, {Kind::claim, 0}});
   EXPECT_EQ(usb.write(2, bytes({1}), 1).result, UsbResult::gone);
   EXPECT_EQ(usb.claim(0), UsbResult::gone);
 }
 
-TEST(ScriptedTransport, ComplainsOfTheFirstCallThatIsNotInTheScript) {
+TEST(ScriptedTransport, ReportsTheFirstCallOutsideTheScript) {
   const auto complaint = [](const std::function<void(UsbTransport&)>& call) {
     ScriptedTransport usb({{Kind::write, 2, {}, bytes({1, 2})}});
     call(usb);
     EXPECT_FALSE(usb.done());
-    EXPECT_EQ(usb.write(2, bytes({1, 2}), 1).result, UsbResult::failed) << "and trusts none after";
+    EXPECT_EQ(usb.write(2, bytes({1, 2}), 1).result, UsbResult::failed)
+        << "all later ones are distrusted";
     return usb.complaint();
   };
   Bytes into(4);

@@ -7,7 +7,7 @@
 #include <vtkNew.h>
 
 #include "core/error.h"
-#include "visualization/view/camera.h"
+#include "visualization/values/camera.h"
 
 namespace patina {
 namespace {
@@ -21,7 +21,7 @@ std::vector<Vec3> cloud() {
   return points;
 }
 
-// Where a point is in the picture: fractions of the height from the centre.
+// Returns a point's position in the picture: fractions of the height from the centre.
 Vec2 projected(vtkCamera& camera, const Vec3& point) {
   const Ray centre = rayThrough(camera, 0, 0);
   const Vec3 right = centre.direction.cross(Vec3(camera.GetViewUp())).normalized();
@@ -31,12 +31,12 @@ Vec2 projected(vtkCamera& camera, const Vec3& point) {
   return {to.dot(right) / high, to.dot(up) / high};
 }
 
-TEST(Camera, FitsEveryPointFromEverySideAndNotWithRoomToSpare) {
+TEST(Camera, FitsEveryPointTightlyFromEverySide) {
   for (const ViewPreset view : allViews())
     for (const double aspect : {0.5, 1.0, 2.0}) {
       const vtkNew<vtkCamera> camera;
       turnCamera(*camera, view);
-      fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), aspect);
+      resetCameraTo(*camera, Vec3(0, 0.3, 0), cloud(), aspect);
       double fullest = 0;
       for (const Vec3& point : cloud()) {
         const Vec2 at = projected(*camera, point);
@@ -55,9 +55,9 @@ TEST(Camera, PresetsLookAlongTheirAxis) {
   EXPECT_NEAR((viewDirection(*camera) - Vec3::UnitZ()).norm(), 0, 1e-12);
 }
 
-// T-A09: top, bottom, front and back without perspective; each corner of a box is where a person
-// who stands there has it.
-TEST(Camera, FourViewsShowACornerWhereItIs) {
+// T-A09: top, bottom, front and back without perspective; each corner of a box is at the position
+// that a viewer from there expects.
+TEST(Camera, FourViewsShowACornerAtItsPlace) {
   struct View {
     ViewPreset preset;
     Vec3 right, up;
@@ -84,21 +84,21 @@ TEST(Camera, FourViewsShowACornerWhereItIs) {
   }
 }
 
-TEST(Camera, APointInTheViewPlaneProjectsBackToItsPlaceInThePicture) {
+TEST(Camera, ProjectsAPointInTheViewPlaneBackToItsPlace) {
   const vtkNew<vtkCamera> camera;
   turnCamera(*camera, ViewPreset::iso);
-  fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
+  resetCameraTo(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
   const Vec3 through(0.01, 0.31, -0.02);
   const Vec3 point = pointInViewPlane(*camera, 0.21, -0.34, through);
   EXPECT_NEAR((projected(*camera, point) - Vec2(0.21, -0.34)).norm(), 0, 1e-12);
   EXPECT_NEAR((point - through).dot(viewDirection(*camera)), 0, 1e-12);
 }
 
-// Against VTK's own projection.
-TEST(Camera, WithoutPerspectiveRaysAreParallelAndMeetWhatIsSeenThere) {
+// The reference is VTK's own projection.
+TEST(Camera, RaysAreParallelAndHitThePicturesPointWithoutPerspective) {
   const vtkNew<vtkCamera> camera;
   turnCamera(*camera, ViewPreset::iso);
-  fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
+  resetCameraTo(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
   setParallel(*camera, true);
   zoom(*camera, 1.7);
   pan(*camera, 0.1, -0.05);
@@ -113,9 +113,9 @@ TEST(Camera, WithoutPerspectiveRaysAreParallelAndMeetWhatIsSeenThere) {
   }
 }
 
-TEST(Camera, WhatIsLookedAtKeepsItsSizeWithoutPerspective) {
+TEST(Camera, FocusedObjectKeepsItsSizeWithoutPerspective) {
   const vtkNew<vtkCamera> camera;
-  fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
+  resetCameraTo(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
   zoom(*camera, 1.3);
   const Vec3 at(camera->GetFocalPoint());
   const Vec3 edge = pointInViewPlane(*camera, 0.3, 0.4, at);
@@ -126,7 +126,7 @@ TEST(Camera, WhatIsLookedAtKeepsItsSizeWithoutPerspective) {
 TEST(Camera, OrbitKeepsTheDistanceAndPanMovesWithThePointer) {
   const vtkNew<vtkCamera> camera;
   turnCamera(*camera, ViewPreset::iso);
-  fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
+  resetCameraTo(*camera, Vec3(0, 0.3, 0), cloud(), 1.5);
   const double distance = camera->GetDistance();
   orbit(*camera, 0.2, 0.1);
   EXPECT_NEAR(camera->GetDistance(), distance, 1e-9);
@@ -137,7 +137,7 @@ TEST(Camera, OrbitKeepsTheDistanceAndPanMovesWithThePointer) {
   EXPECT_NEAR(camera->GetDistance(), distance / 2, 1e-9);
 }
 
-TEST(ViewOptions, WordsReadBackAndUnknownOnesListTheChoices) {
+TEST(ViewOptions, ReadBackTheirWordsAndListTheChoicesForUnknownOnes) {
   for (const Layer layer : allLayers()) EXPECT_EQ(parseLayers(name(layer)), std::set<Layer>{layer});
   for (const ViewPreset view : allViews()) EXPECT_EQ(parseView(name(view)), view);
   EXPECT_EQ(parseLayers("mesh,slice,band").size(), 3U);
@@ -152,14 +152,14 @@ TEST(ViewOptions, WordsReadBackAndUnknownOnesListTheChoices) {
   EXPECT_THROW(parseView("front"), Error);
 }
 
-// Against the rotation and the shift of the thing itself, seen by a camera that stands still.
-TEST(Camera, CarriesWhatItLooksAtAsAThingInTheHand) {
+// The reference is the rotation and the shift of the object itself, seen by a fixed camera.
+TEST(Camera, MovesTheObjectLikeInTheHand) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int round = 0; round < 50; ++round) {
     const vtkNew<vtkCamera> camera;
     turnCamera(*camera, ViewPreset::iso);
-    fitCamera(*camera, Vec3(0, 0.3, 0), cloud(), 1);
+    resetCameraTo(*camera, Vec3(0, 0.3, 0), cloud(), 1);
     const Vec3 focus(camera->GetFocalPoint());
     const Vec3 back = -viewDirection(*camera), up(camera->GetViewUp()), right = up.cross(back);
     Eigen::Matrix3d axes;
@@ -169,7 +169,7 @@ TEST(Camera, CarriesWhatItLooksAtAsAThingInTheHand) {
     const double high = 2 * camera->GetDistance() * std::tan(camera->GetViewAngle() * M_PI / 360);
     const vtkNew<vtkCamera> still;
     still->DeepCopy(camera);
-    carry(*camera, shift, turn);
+    moveInObjectMode(*camera, shift, turn);
     for (const Vec3& point : cloud()) {
       const Vec3 arm = point - focus;
       const Vec3 moved = point + (axes * turn).cross(arm) + high * (axes * shift);

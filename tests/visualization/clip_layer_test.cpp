@@ -13,7 +13,7 @@ Ray sightOf(const Vec3& point) {
   return {eye, (point - eye).normalized()};
 }
 
-TEST(ClipHandle, ItsBallAndShaftShiftItsHeadTiltsAndBesideItIsNothing) {
+TEST(ClipHandle, BallAndShaftShiftHeadTiltsAndBesideIsNothing) {
   const ClipPlane plane{Vec3(0.1, 0.2, 0.3), Vec3(1, 2, 2) / 3};
   const auto on = [&](double part) { return sightOf(plane.origin + 0.5 * part * plane.normal); };
   EXPECT_EQ(clipPartAt(plane, 0.5, on(0)), ClipPart::shift);
@@ -24,7 +24,7 @@ TEST(ClipHandle, ItsBallAndShaftShiftItsHeadTiltsAndBesideItIsNothing) {
   EXPECT_FALSE(clipPartAt(plane, 0.5, on(-0.4)).has_value());
 }
 
-TEST(ClipHandle, AShiftFollowsThePointerAlongTheNormalAlone) {
+TEST(ClipHandle, ShiftFollowsThePointerAlongTheNormalOnly) {
   const ClipPlane plane{Vec3(0.1, 0.2, 0.3), Vec3(2, 1, 2) / 3};
   for (const double way : {-0.2, 0.05, 0.3}) {
     const Vec3 held = plane.origin + 0.2 * plane.normal;
@@ -35,7 +35,7 @@ TEST(ClipHandle, AShiftFollowsThePointerAlongTheNormalAlone) {
   }
 }
 
-TEST(ClipHandle, AnArrowThatPointsAtTheViewerIsShiftedByGoingUp) {
+TEST(ClipHandle, ArrowTowardsTheViewerShiftsByMovingUp) {
   const ClipPlane plane{Vec3::Zero(), -Vec3::UnitY()};
   const Ray from{Vec3(0, -2, 0), Vec3::UnitY()};
   const Ray to{Vec3(0, -2, 0), Vec3(0.1, 2, 0.05).normalized()};
@@ -44,7 +44,7 @@ TEST(ClipHandle, AnArrowThatPointsAtTheViewerIsShiftedByGoingUp) {
   EXPECT_NEAR(moved.origin.x(), 0, 1e-12);
 }
 
-TEST(ClipHandle, ATiltPointsTheArrowsHeadToThePointer) {
+TEST(ClipHandle, TiltPointsTheArrowToThePointer) {
   const ClipPlane plane{Vec3(0.1, 0.2, 0.3), -Vec3::UnitY()};
   for (const Vec3& normal : {Vec3(0.4, -0.8, 0.3), Vec3(-0.5, -0.7, -0.4)}) {
     const Vec3 head = plane.origin + 0.5 * normal.normalized();
@@ -59,7 +59,7 @@ TEST(ClipHandle, ATiltPointsTheArrowsHeadToThePointer) {
   EXPECT_GT(beside.normal.x(), 0.5);
 }
 
-TEST(ClipHandle, ATiltStaysOnAnAxisThatIsNear) {
+TEST(ClipHandle, TiltSnapsToANearAxis) {
   const ClipPlane plane{Vec3::Zero(), -Vec3::UnitY()};
   const auto tilted = [&](double degrees) {
     const double angle = degrees * M_PI / 180;
@@ -69,7 +69,7 @@ TEST(ClipHandle, ATiltStaysOnAnAxisThatIsNear) {
   EXPECT_LT((tilted(6) - Vec3(std::sin(M_PI / 30), -std::cos(M_PI / 30), 0)).norm(), 1e-9);
 }
 
-TEST(ClipPlane, ASightBeginsOnItWhereItsEyeIsInWhatIsCutAway) {
+TEST(ClipPlane, SightStartsOnThePlaneIfTheEyeIsInTheCutPart) {
   const ClipPlane plane{Vec3(0, 0.5, 0), -Vec3::UnitY()};
   const Ray sight = sightOf(Vec3(0, 1, 0));
   const auto rest = behind(plane, sight);
@@ -78,7 +78,7 @@ TEST(ClipPlane, ASightBeginsOnItWhereItsEyeIsInWhatIsCutAway) {
   EXPECT_LT((rest->origin - sight.origin).cross(sight.direction).norm(), 1e-12) << "on the sight";
   EXPECT_FALSE(behind(plane, {sight.origin, -sight.direction}).has_value());
   const Ray inner{Vec3(0, 2, 0), Vec3::UnitX()};
-  EXPECT_EQ(behind(plane, inner)->origin, inner.origin) << "it is in what is kept";
+  EXPECT_EQ(behind(plane, inner)->origin, inner.origin) << "the kept file has it";
 }
 
 } // namespace

@@ -51,7 +51,7 @@ TEST_F(ExportFiles, MeshesReadBackInDoublePrecisionWithTheirFaceNumbers) {
   EXPECT_EQ(back->GetCellData()->GetArray("face")->GetTuple1(9), 9);
 }
 
-TEST_F(ExportFiles, AToolPathIsOneLineWithItsForces) {
+TEST_F(ExportFiles, ToolPathIsOneLineWithItsForces) {
   writeToolPathVtp(folder_ / "p.vtp", samples());
   const vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName((folder_ / "p.vtp").c_str());
@@ -66,7 +66,7 @@ TEST_F(ExportFiles, AToolPathIsOneLineWithItsForces) {
   EXPECT_EQ(reader->GetOutput()->GetNumberOfPoints(), 1);
 }
 
-TEST_F(ExportFiles, ACollectionOpensItsParts) {
+TEST_F(ExportFiles, CollectionOpensItsParts) {
   writeMeshVtp(folder_ / "a.vtp", icosphere(1, 2));
   writeMeshVtp(folder_ / "b.vtp", icosphere(1, 3));
   writeCollectionVtm(folder_ / "all.vtm", {{"a & <a>", "a.vtp"}, {"b", "b.vtp"}});
@@ -88,7 +88,7 @@ TEST_F(ExportFiles, ToolSamplesReadBackBitForBit) {
   EXPECT_EQ(table.columns.back(), "snap");
 }
 
-TEST_F(ExportFiles, AFolderThatIsNotThereIsAFileError) {
+TEST_F(ExportFiles, MissingFolderIsAFileError) {
   EXPECT_THROW(writeMeshVtp(folder_ / "no" / "m.vtp", icosphere(1, 1)), FileError);
   EXPECT_THROW(writeCollectionVtm(folder_ / "no" / "m.vtm", {}), FileError);
 }

@@ -1,4 +1,4 @@
-// Read back as ParaView does, by VTK's own readers.
+// Reads exports with VTK's own readers, like ParaView.
 #include "visualization/export/export_paint.h"
 
 #include <filesystem>
@@ -75,7 +75,7 @@ class ExportPaint : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("patina-export-paint-" + std::to_string(getpid()));
 };
 
-TEST_F(ExportPaint, ASurfaceOfTwoTrianglesCarriesWhatWasPaintedAtItsPoints) {
+TEST_F(ExportPaint, SurfaceOfTwoTrianglesCarriesPaintAtItsPoints) {
   writePaintVtp(folder_ / "p.vtp", scene_, 0);
   const auto reader = read<vtkXMLPolyDataReader>("p.vtp");
   vtkPolyData* data = reader->GetOutput();
@@ -83,7 +83,7 @@ TEST_F(ExportPaint, ASurfaceOfTwoTrianglesCarriesWhatWasPaintedAtItsPoints) {
   EXPECT_EQ(arraysOf(points), (std::set<std::string>{"texture coordinates", "color", "relief [m]",
                                                      "stiffness [N/m]", "damping [N s/m]"}));
   ASSERT_NE(points->GetTCoords(), nullptr);
-  ASSERT_GT(data->GetNumberOfPoints(), 1000); // two triangles would tell nothing
+  ASSERT_GT(data->GetNumberOfPoints(), 1000); // two triangles would show nothing
   const Material base = baseMaterial(scene_.haptics);
   const Pose object_from_world = object().world_from_object.inverse();
   for (vtkIdType p = 0; p < data->GetNumberOfPoints(); ++p) {
@@ -111,7 +111,7 @@ TEST_F(ExportPaint, ASurfaceOfTwoTrianglesCarriesWhatWasPaintedAtItsPoints) {
   EXPECT_EQ(range[1], 1);
 }
 
-TEST_F(ExportPaint, MaterialIsAVolumeInPlaceWithTheValuesThatAreFelt) {
+TEST_F(ExportPaint, MaterialIsAVolumeInPlaceWithTheRenderedValues) {
   writeMaterialVti(folder_ / "m.vti", scene_, 0);
   const auto reader = read<vtkXMLImageDataReader>("m.vti");
   vtkImageData* image = reader->GetOutput();
@@ -123,7 +123,7 @@ TEST_F(ExportPaint, MaterialIsAVolumeInPlaceWithTheValuesThatAreFelt) {
   int painted = 0;
   for (vtkIdType p = 0; p < image->GetNumberOfPoints(); ++p) {
     Vec3 own = object_from_world * Vec3(image->GetPoint(p));
-    // On the node itself: beside it the cells' other nodes have a say.
+    // The point lies on the node: elsewhere the cells' other nodes contribute.
     const Vec3 node = ((own - map.origin()) / kVoxel).array().round();
     ASSERT_LT((own - map.origin() - kVoxel * node).norm(), 1e-6);
     own = map.origin() + kVoxel * node;
@@ -138,7 +138,7 @@ TEST_F(ExportPaint, MaterialIsAVolumeInPlaceWithTheValuesThatAreFelt) {
   EXPECT_LT(painted, image->GetNumberOfPoints());
 }
 
-TEST_F(ExportPaint, ACollectionOpensSurfaceAndVolume) {
+TEST_F(ExportPaint, CollectionOpensSurfaceAndVolume) {
   writePaintVtp(folder_ / "p.vtp", scene_, 0);
   writeMaterialVti(folder_ / "m.vti", scene_, 0);
   writeCollectionVtm(folder_ / "all.vtm", {{"thing paint", "p.vtp"}, {"thing material", "m.vti"}});
@@ -156,7 +156,7 @@ TEST_F(ExportPaint, ACollectionOpensSurfaceAndVolume) {
   }
 }
 
-TEST_F(ExportPaint, WhatWasNotPaintedHasNoArray) {
+TEST_F(ExportPaint, UnpaintedLayersHaveNoArray) {
   SceneObject bare = object();
   ObjectPaint paint;
   paint.material = materialOf(
@@ -175,7 +175,7 @@ TEST_F(ExportPaint, WhatWasNotPaintedHasNoArray) {
   EXPECT_THROW(writeMaterialVti(folder_ / "m.vti", scene_, 0), std::invalid_argument);
 }
 
-TEST_F(ExportPaint, AFolderThatIsNotThereIsAFileError) {
+TEST_F(ExportPaint, MissingFolderIsAFileError) {
   EXPECT_THROW(writePaintVtp(folder_ / "no" / "p.vtp", scene_, 0), FileError);
   EXPECT_THROW(writeMaterialVti(folder_ / "no" / "m.vti", scene_, 0), FileError);
 }

@@ -28,7 +28,7 @@
 #include "geometry/mesh/mesh_report.h"
 #include "support/fresh_folder.h"
 #include "support/node_values.h"
-#include "visualization/export/field_io.h"
+#include "visualization/files/field_io.h"
 
 namespace patina {
 namespace {
@@ -57,14 +57,14 @@ SurfaceField sphereField(int resolution = 43) { // no multiple of the block side
   return sampleFunction(sphereValue, grid, spec.band);
 }
 
-// A face layer of numbers that tell the nodes apart.
+// Adds a face layer with a different number at each node.
 void addFaces(SurfaceField& field) {
   std::int32_t next = 7;
   for (const auto& distance : field.distance) {
     FaceNodes faces{};
     const auto phi = distance->phi();
     for (std::size_t n = 0; n < faces.face.size(); ++n)
-      faces.face[n] = std::abs(phi[n]) < kBeyondBand ? next++ : -1;
+      faces.face[n] = std::abs(phi[n]) < kBackground ? next++ : -1;
     field.face.push_back(std::make_shared<const FaceBlock>(faces));
   }
 }
@@ -113,7 +113,7 @@ TEST_F(FieldIo, StoredNodesComeBackBitForBit) {
   EXPECT_TRUE(isField(file("f.vti")));
 }
 
-// As ParaView reads it: one image, also where a piece is in the file only once for many.
+// ParaView's reader: one image, also if a piece stands in the file once for many.
 TEST_F(FieldIo, VtkReadsThePiecesAsOneImage) {
   SurfaceField field = sphereField(150);
   ASSERT_GT(field.grid.nodes[0], 128);
@@ -142,7 +142,7 @@ TEST_F(FieldIo, VtkReadsThePiecesAsOneImage) {
   EXPECT_EQ(readField(file("f.vti")).block_at, field.block_at);
 }
 
-TEST_F(FieldIo, AMovedOrScaledGridIsRefused) {
+TEST_F(FieldIo, RefusesAMovedOrScaledGrid) {
   writeField(file("f.vti"), sphereField());
   const std::string whole = readFile(file("f.vti"));
   for (const std::string name : {"Origin", "Spacing"}) {
@@ -160,13 +160,13 @@ TEST_F(FieldIo, KeepsSparseBlocksSparse) {
   writeField(file("f.vti"), field);
   const SurfaceField back = readField(file("f.vti"));
   EXPECT_LE(back.blockCount(), field.blockCount());
-  EXPECT_LT(back.blockCount(), back.top.size());
+  EXPECT_LT(back.blockCount(), back.block_index.size());
   EXPECT_TRUE(back.face.empty());
   EXPECT_TRUE(back.coarse.empty());
   EXPECT_EQ(withSamples(std::make_shared<SurfaceField>(back))->sample.size(), back.blockCount());
 }
 
-TEST_F(FieldIo, EveryTruncationIsAnErrorThatNamesTheFile) {
+TEST_F(FieldIo, NamesTheFileForEveryTruncation) {
   writeField(file("f.vti"), sphereField());
   const std::string whole = readFile(file("f.vti"));
   for (const double fraction : {0.0, 0.001, 0.01, 0.1, 0.5, 0.9, 0.99}) {
@@ -185,7 +185,7 @@ TEST_F(FieldIo, DamagedBytesNeverCrashAndNeverGiveAnInfiniteField) {
   int refused = 0;
   for (int round = 0; round < 60; ++round) {
     std::string bytes = whole;
-    // The header's numbers on one half of the rounds, the compressed data on the other.
+    // The rounds change the header's numbers and the compressed data in turn.
     const std::size_t range = round % 2 == 0 ? std::size_t{1500} : bytes.size();
     for (int hit = 0; hit < 3; ++hit) bytes[random() % range] = static_cast<char>(random());
     std::ofstream(file("bad.vti"), std::ios::binary) << bytes;
@@ -238,7 +238,7 @@ void writeByHand(const fs::path& path, const HandMade& of) {
   ASSERT_EQ(writer->Write(), 1);
 }
 
-TEST_F(FieldIo, RefusesNumbersThatNoFieldHolds) {
+TEST_F(FieldIo, RefusesNumbersOutsideAFieldsRange) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
                   kInfinity = std::numeric_limits<float>::infinity();
   writeByHand(file("good.vti"), {});
@@ -256,7 +256,7 @@ TEST_F(FieldIo, RefusesNumbersThatNoFieldHolds) {
   }
 }
 
-TEST_F(FieldIo, RefusesWhatIsNotAFieldInOneLine) {
+TEST_F(FieldIo, RefusesOtherFilesInOneLine) {
   std::ofstream(file("text.vti")) << "solid of hope\n";
   EXPECT_NE(messageOf(file("text.vti")).find("not a VTK XML ImageData"), std::string::npos);
   EXPECT_NE(messageOf(file("none.vti")).find("no such file"), std::string::npos);
@@ -274,7 +274,7 @@ TEST_F(FieldIo, FailedWriteLeavesTheOldFile) {
   EXPECT_TRUE(isField(file("f.vti")));
 }
 
-// A density with its solid inside, as of a scanner.
+// A density with its solid inside, like a scanner's.
 void writeDensity(const fs::path& path) {
   const vtkNew<vtkImageData> image;
   constexpr int kNodes = 48;
@@ -295,7 +295,7 @@ void writeDensity(const fs::path& path) {
   writer->Write();
 }
 
-TEST_F(FieldIo, AVolumeFromElsewhereGivesAnOutwardSurface) {
+TEST_F(FieldIo, ForeignVolumeGivesAnOutwardSurface) {
   writeDensity(file("v.vti"));
   EXPECT_FALSE(isField(file("v.vti")));
   const VolumeRange range = scalarRange(file("v.vti"));
@@ -308,7 +308,7 @@ TEST_F(FieldIo, AVolumeFromElsewhereGivesAnOutwardSurface) {
   EXPECT_NEAR(volume(mesh), 4.0 / 3.0 * M_PI * 0.512, 0.02);
 }
 
-// Whole numbers, as of a scanner: `value(i, j, k)` at each node.
+// Whole numbers, like a scanner's: `value(i, j, k)` at each node.
 template <class Array, class Value> void writeWhole(const fs::path& path, const Value& value) {
   const vtkNew<vtkImageData> image;
   constexpr int kNodes = 14;
@@ -356,7 +356,7 @@ TEST_F(FieldIo, WholeNumbersAtAWholeIsoValueGiveAClosedSurface) {
   for (const char* name : {"ball.vti", "noise.vti", "cubes.vti", "scaled.vti"}) check(file(name));
 }
 
-TEST_F(FieldIo, TheHighestAndTheLowestWholeNumberAreSurfacesToo) {
+TEST_F(FieldIo, HighestAndLowestWholeNumberGiveSurfaces) {
   writeWhole<vtkSignedCharArray>(file("mask.vti"), [](int i, int j, int k) {
     return (Vec3(i, j, k) - Vec3(6, 6, 6)).norm() < 4 ? 1 : 0;
   });
@@ -366,7 +366,7 @@ TEST_F(FieldIo, TheHighestAndTheLowestWholeNumberAreSurfacesToo) {
   EXPECT_FALSE(isoSurfaceOfVolume(file("mask.vti"), -4).triangles.empty());
 }
 
-TEST_F(FieldIo, AnIsoValueBetweenWholeNumbersIsTakenAsItIs) {
+TEST_F(FieldIo, IsoValueBetweenWholeNumbersIsUsedUnchanged) {
   writeWhole<vtkShortArray>(file("v.vti"), [](int i, int, int) { return 10 * i; });
   double x = 99;
   for (const Vec3& p : isoSurfaceOfVolume(file("v.vti"), 33).positions) x = std::min(x, p.x());
@@ -405,7 +405,7 @@ TEST_F(FieldIo, NumbersOfEveryTypeGiveTheSameSurface) {
   expectTruth(mesh(vtkSmartPointer<vtkFloatArray>::New(), "e.vti"), "float32");
 }
 
-TEST_F(FieldIo, AnIsoValueOutsideTheRangeIsExplained) {
+TEST_F(FieldIo, ExplainsAnIsoValueOutsideTheRange) {
   writeDensity(file("v.vti"));
   try {
     isoSurfaceOfVolume(file("v.vti"), 1000);

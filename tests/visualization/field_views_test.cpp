@@ -1,10 +1,11 @@
-// What slice, nodes and mouse read from a field.
+// Values that slice, nodes and mouse read from a field.
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "scene/surface_pick.h"
 #include "support/node_values.h"
 #include "visualization/layers/node_layer.h"
@@ -27,7 +28,7 @@ const SurfaceField& sphere() {
   return field;
 }
 
-TEST(SurfacePick, HitsASphereWhereARayDoes) {
+TEST(SurfacePick, HitsASphereAtTheRaysPoint) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 500; ++i) {
@@ -40,12 +41,12 @@ TEST(SurfacePick, HitsASphereWhereARayDoes) {
     const auto hit = firstSurfaceAlong(sphere(), origin, direction);
     ASSERT_TRUE(hit.has_value());
     const Vec3 expected = origin + direction * (-b - std::sqrt(root));
-    // A hundredth of a voxel, and the trilinear value's own error, grazing rays the most.
+    // A hundredth of a voxel, and the trilinear value's own error, largest for grazing rays.
     ASSERT_LT((*hit - expected).norm(), 0.1 * sphere().grid.voxel);
   }
 }
 
-TEST(SurfacePick, MissesWhatIsNotThere) {
+TEST(SurfacePick, MissesEmptySpace) {
   EXPECT_FALSE(firstSurfaceAlong(sphere(), Vec3(0, 0, 1), Vec3::UnitZ()));
   EXPECT_FALSE(firstSurfaceAlong(sphere(), Vec3(0.036, 0, 1), -Vec3::UnitZ()));
   EXPECT_FALSE(firstSurfaceAlong(sphere(), Vec3(1, 1, 1), Vec3::UnitX()));
@@ -62,7 +63,7 @@ TEST(NodesNear, AreTheStoredNodesWithinTheRadius) { // K26
     for (int j = 0; j < grid.nodes[1]; ++j)
       for (int i = 0; i < grid.nodes[0]; ++i)
         if ((grid.toWorld(Vec3(i, j, k)) - point).norm() <= 4.01 * grid.voxel &&
-            std::abs(test::phiAt(sphere(), i, j, k)) < kBeyondBand)
+            std::abs(test::phiAt(sphere(), i, j, k)) < kBackground)
           ++expected;
   EXPECT_EQ(nodes.size(), expected);
   EXPECT_GT(nodes.size(), 100U);
@@ -76,7 +77,9 @@ TEST(NodesNear, AreTheStoredNodesWithinTheRadius) { // K26
 TEST(FieldPlane, HoldsTheDistanceOnThePlaneAndNothingBeyondTheBand) {
   const FieldGrid& grid = sphere().grid;
   for (int axis = 0; axis < 3; ++axis) {
-    const FieldPlane plane = planeOf(sphere(), {axis, 0.47});
+    const auto last = grid.nodes[static_cast<std::size_t>(axis)] - 1;
+    const double position = grid.origin[axis] + 0.47 * last * grid.voxel;
+    const FieldPlane plane = planeOf(sphere(), {Vec3::Unit(axis), position});
     const auto across = static_cast<std::size_t>((axis + 1) % 3);
     const auto up = static_cast<std::size_t>((axis + 2) % 3);
     ASSERT_EQ(plane.columns, grid.nodes[across]);
@@ -85,7 +88,7 @@ TEST(FieldPlane, HoldsTheDistanceOnThePlaneAndNothingBeyondTheBand) {
     for (int row = 0; row < plane.rows; ++row)
       for (int column = 0; column < plane.columns; ++column) {
         Vec3 q;
-        q[axis] = 0.47 * (grid.nodes[static_cast<std::size_t>(axis)] - 1);
+        q[axis] = 0.47 * last;
         q[static_cast<int>(across)] = column;
         q[static_cast<int>(up)] = row;
         const double phi = (grid.toWorld(q).norm() - kRadius) / grid.voxel;
@@ -104,8 +107,45 @@ TEST(FieldPlane, HoldsTheDistanceOnThePlaneAndNothingBeyondTheBand) {
 }
 
 TEST(FieldPlane, PositionsOutsideTheGridAreClamped) {
-  EXPECT_EQ(planeOf(sphere(), {2, -3}).phi.size(), planeOf(sphere(), {2, 0}).phi.size());
-  EXPECT_EQ(planeOf(sphere(), {2, 7}).phi.size(), planeOf(sphere(), {2, 1}).phi.size());
+  const FieldGrid& grid = sphere().grid;
+  const ValueRange range = rangeOf(grid, Vec3::UnitZ());
+  EXPECT_NEAR(range.low, grid.origin.z(), 1e-12);
+  EXPECT_EQ(planeOf(sphere(), {Vec3::UnitZ(), -3}).origin.z(), range.low);
+  EXPECT_EQ(planeOf(sphere(), {Vec3::UnitZ(), 7}).origin.z(), range.high);
+  EXPECT_NEAR(planeOf(sphere(), {}).origin.y(), boxOf(grid).center().y(), 1e-12);
+}
+
+TEST(FieldPlane, AtAnAngleHoldsTheDistanceWhereThePlaneIs) {
+  const FieldGrid& grid = sphere().grid;
+  const Vec3 normal = Vec3(0.3, -1, 0.8).normalized();
+  const double position = 0.4 * kRadius;
+  const FieldPlane plane = planeOf(sphere(), {normal, position});
+  std::size_t known = 0;
+  for (int row = 0; row < plane.rows; ++row)
+    for (int column = 0; column < plane.columns; ++column) {
+      const Vec3 point = plane.origin + plane.across * column / (plane.columns - 1) +
+                         plane.up * row / (plane.rows - 1);
+      ASSERT_NEAR(point.dot(normal), position, 1e-12);
+      const float value = plane.phi[static_cast<std::size_t>(row * plane.columns + column)];
+      if (!std::isfinite(value)) continue;
+      ++known;
+      // Linear along three edges: 3 h^2 / 8r.
+      ASSERT_NEAR(value, (point.norm() - kRadius) / grid.voxel, 0.05);
+    }
+  // A ring about the circle in which the plane meets the sphere.
+  EXPECT_GT(known, 300U);
+}
+
+TEST(SliceText, HasADirectionAndAPosition) {
+  EXPECT_EQ(parseSlice("-z").normal, Vec3(-Vec3::UnitZ()));
+  EXPECT_FALSE(parseSlice("y").position);
+  const SlicePosition slice = parseSlice("0, 3,4:12.5mm");
+  EXPECT_NEAR((slice.normal - Vec3(0, 0.6, 0.8)).norm(), 0, 1e-12);
+  EXPECT_DOUBLE_EQ(slice.position.value(), 0.0125);
+  EXPECT_EQ(directionText(slice.normal), "0, 0.6, 0.8");
+  EXPECT_EQ(directionText(-Vec3::UnitX()), "-x");
+  for (const char* bad : {"", "w", "0,0,0", "1,2", "1,2,3,4", "1,2,nan", "x:", "x:5furlong"})
+    EXPECT_THROW(parseSlice(bad), Error) << bad;
 }
 
 } // namespace

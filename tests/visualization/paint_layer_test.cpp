@@ -16,7 +16,6 @@
 #include "support/one_thread.h"
 #include "support/painted_objects.h"
 #include "visualization/layers/image_surface.h"
-#include "visualization/layers/material_surface.h"
 
 namespace patina {
 namespace {
@@ -40,7 +39,7 @@ TEST(PaintColors, MaterialGetsDarkerInEqualSteps) {
   EXPECT_LT(*most, 1.35 * *least); // a step over a station cuts its corner
 }
 
-TEST(PaintColors, ReliefIsPaleAtZeroWhateverItsRange) {
+TEST(PaintColors, ReliefIsPaleAtZeroForEveryRange) {
   for (const ValueRange range :
        {ValueRange{-1e-3, 1e-3}, ValueRange{0, 5e-4}, ValueRange{-1e-4, 8e-4}}) {
     const auto table = paintColors(PaintQuantity::relief, range);
@@ -53,7 +52,7 @@ TEST(PaintColors, ReliefIsPaleAtZeroWhateverItsRange) {
   }
 }
 
-TEST(PaintQuantity, RangesHaveRoundEndsAndHoldWhatTheyAreOf) {
+TEST(PaintQuantity, RangesHaveRoundEndsAndContainTheirValues) {
   EXPECT_EQ(rounded({500, 1000}), (ValueRange{500, 1000}));
   EXPECT_EQ(rounded({0, 0.0005}), (ValueRange{0, 0.0005}));
   for (const ValueRange range : {ValueRange{500, 500}, ValueRange{0, 0}, ValueRange{-0.37, 1.91},
@@ -68,14 +67,14 @@ TEST(PaintQuantity, RangesHaveRoundEndsAndHoldWhatTheyAreOf) {
   EXPECT_EQ(readingUnit(quantityOf(MaterialChannel::static_friction), {0, 1}).title,
             "static friction");
   EXPECT_EQ(readingUnit(quantityOf(MaterialChannel::damping), {0, 1}).title, "damping [N s/m]");
-  EXPECT_EQ(readingUnit(PaintQuantity::relief, {0, 5e-4}).per_si, 1e3);
-  EXPECT_EQ(readingUnit(quantityOf(MaterialChannel::roughness), {0, 2e-5}).per_si, 1e6);
+  EXPECT_EQ(readingUnit(PaintQuantity::relief, {0, 5e-4}).display_per_si, 1e3);
+  EXPECT_EQ(readingUnit(quantityOf(MaterialChannel::roughness), {0, 2e-5}).display_per_si, 1e6);
 }
 
 // g linear in space: its gradient along the surface is the tangent part, up to every edge.
-TEST(ReliefSlope, IsTheTangentGradientUpToTheEdgesOfCharts) {
+TEST(ReliefSlope, EqualsTheTangentGradientUpToTheEdgesOfCharts) {
   const TriangleMesh mesh = icosphere(0.03, 10);
-  const TextureLayout layout = madeAtlas(mesh, 256);
+  const TextureLayout layout = generateAtlas(mesh, 256);
   ASSERT_GT(layout.charts, 1);
   const Vec3 gradient(12, -7, 20);
   const auto image = imageOf(mesh, *layout.uvs, 256, 1, [&](const Vec3& p, float* g) {
@@ -99,14 +98,14 @@ TEST(ReliefSlope, IsTheTangentGradientUpToTheEdgesOfCharts) {
       ++shown;
     }
   EXPECT_GT(shown, 20000);
-  // Faces meet at 6 degrees, so that a difference across an edge is off by as much.
+  // The faces meet at 6 degrees, so that a difference across an edge has that error.
   EXPECT_LT(worst, 0.2 * gradient.norm());
 }
 
 TEST(ReliefSlope, EncodingIsFineNearZeroAndEndsAtTheSteepest) {
   const auto decoded = [](unsigned char byte) {
     const double root = (byte - 128) / 127.0;
-    return kSteepest * root * std::abs(root);
+    return kMaxEncodedSlope * root * std::abs(root);
   };
   EXPECT_EQ(encodedSlope(Vec3::Zero()), (std::array<unsigned char, 3>{128, 128, 128}));
   for (double s = -1.9; s < 2; s += 0.0371) {
@@ -117,7 +116,7 @@ TEST(ReliefSlope, EncodingIsFineNearZeroAndEndsAtTheSteepest) {
   EXPECT_EQ(encodedSlope(Vec3(99, -99, 0))[1], 1);
 }
 
-TEST(ImageTiles, OnlyThoseThatWereWrittenAreChanged) {
+TEST(ImageTiles, ChangeOnlyWhereWritten) {
   const TiledImage before(128, 128, 1);
   TiledImage after = before;
   EXPECT_TRUE(changedTiles(&before, after).empty());
@@ -131,7 +130,7 @@ TEST(ImageTiles, OnlyThoseThatWereWrittenAreChanged) {
   EXPECT_EQ(changedTiles(&before, TiledImage(64, 64, 1)).size(), 4U);
 }
 
-TEST(MaterialPlaces, AreTheBlocksOfTheChannelThatChanged) {
+TEST(MaterialPlaces, AreTheChangedBlocksOfTheChannel) {
   MaterialMap before(Vec3::Zero(), 0.001);
   before.writable({0, 0, 0}, MaterialChannel::stiffness).weight[0] = 1;
   MaterialMap after = before;
@@ -144,7 +143,7 @@ TEST(MaterialPlaces, AreTheBlocksOfTheChannelThatChanged) {
   ASSERT_EQ(damping->size(), 1U);
   EXPECT_TRUE(damping->front().contains(Vec3(0.0155, 0, 0)));
   EXPECT_FALSE(damping->front().contains(Vec3(0.0145, 0, 0)));
-  // Undone: the block is there no more.
+  // After undo the block is absent.
   EXPECT_EQ(changedPlaces(&after, before, MaterialChannel::damping)->size(), 1U);
   EXPECT_FALSE(changedPlaces(nullptr, after, MaterialChannel::damping).has_value());
 }
@@ -153,7 +152,7 @@ Scene paintedScene(int size) {
   Scene scene;
   SceneObject object = objectOf(icosphere(0.03, 16));
   ObjectPaint paint;
-  paint.layout = madeAtlas(*object.mesh, size);
+  paint.layout = generateAtlas(*object.mesh, size);
   paint.color =
       imageOf(*object.mesh, *paint.layout.uvs, size, kColorChannels, [](const Vec3&, float* rgba) {
         ink(rgba, {1, 0, 0});
@@ -202,7 +201,7 @@ double milliseconds(const std::function<void()>& work) {
 PATINA_TIMED_TEST(PaintLayer, ADabCostsAFractionOfDrawingEverything) {
   const test::OneThread alone;
   test::Reference kernel;
-  const double reference = test::leastSeconds({[&] { kernel.bake(); }})[0];
+  const double reference = test::minSeconds({[&] { kernel.bake(); }})[0];
   for (const PaintQuantity quantity :
        {PaintQuantity::color, PaintQuantity::relief, quantityOf(MaterialChannel::stiffness)}) {
     const vtkNew<vtkRenderer> renderer, overlay;
@@ -222,11 +221,11 @@ PATINA_TIMED_TEST(PaintLayer, ADabCostsAFractionOfDrawingEverything) {
     RecordProperty("dab_ms_" + std::to_string(static_cast<int>(quantity)), std::to_string(least));
     EXPECT_LT(least, 0.2 * whole);
     EXPECT_TRUE(test::within("a dab", 1e-3 * least, reference, 3));
-    EXPECT_LT(milliseconds([&] { layer.prepare(); }), 0.5 * whole); // nothing to do
+    EXPECT_LT(milliseconds([&] { layer.prepare(); }), 0.5 * whole); // no change to prepare
   }
 }
 
-TEST(PaintLayer, DrawsWhatIsPaintedOfWhatIsShown) {
+TEST(PaintLayer, DrawsThePaintOfTheShownLayer) {
   const vtkNew<vtkRenderer> renderer, overlay;
   PaintLayer layer(*renderer, *overlay);
   Scene scene = paintedScene(128);
@@ -244,10 +243,10 @@ TEST(PaintLayer, DrawsWhatIsPaintedOfWhatIsShown) {
   layer.set(scene);
   layer.show(PaintQuantity::color);
   EXPECT_FALSE(layer.draws(0));
-  EXPECT_EQ(renderer->GetActors()->GetNumberOfItems(), 0); // nothing is left of it
+  EXPECT_EQ(renderer->GetActors()->GetNumberOfItems(), 0); // no actor remains
 }
 
-TEST(PaintLayer, ItsRangeFollowsThePaintUntilItIsLocked) {
+TEST(PaintLayer, RangeFollowsThePaintUntilLocked) {
   const vtkNew<vtkRenderer> renderer, overlay;
   PaintLayer layer(*renderer, *overlay);
   const Scene scene = paintedScene(128);
@@ -259,15 +258,24 @@ TEST(PaintLayer, ItsRangeFollowsThePaintUntilItIsLocked) {
   EXPECT_LE(found.low, 330);
   EXPECT_GE(found.high, 870);
   EXPECT_GT(found.low, 150);
-  layer.lockRange(quantityOf(MaterialChannel::stiffness), ValueRange{0, 100});
+  ColorScale locked;
+  locked.range = ValueRange{0, 100};
+  layer.setScale(quantityOf(MaterialChannel::stiffness), locked);
   layer.prepare();
   EXPECT_EQ(layer.range(quantityOf(MaterialChannel::stiffness)), (ValueRange{0, 100}));
   EXPECT_EQ(layer.colors()->GetRange()[1], 100);
-  layer.lockRange(quantityOf(MaterialChannel::stiffness), std::nullopt);
+  // Half of the values lie beyond quartiles.
+  layer.setScale(quantityOf(MaterialChannel::stiffness), parseColorScale("percentile=25"));
+  layer.prepare();
+  const ValueRange quartiles = layer.range(quantityOf(MaterialChannel::stiffness));
+  EXPECT_GE(quartiles.low, found.low);
+  EXPECT_LT(quartiles.high - quartiles.low, 0.9 * (found.high - found.low));
+  layer.setScale(quantityOf(MaterialChannel::stiffness), {});
+  layer.prepare();
   EXPECT_EQ(layer.range(quantityOf(MaterialChannel::stiffness)), found);
 }
 
-TEST(PaintedValue, IsWhatIsFeltAndHowMuchOfItIsPaint) { // K23
+TEST(PaintedValue, ReportsTheRenderedValueAndItsShareOfPaint) { // K23
   Scene scene = paintedScene(64);
   scene.objects[0].world_from_object.translation() = Vec3(0.5, 0, 0);
   const MaterialMap& map = *scene.objects[0].paint->material;
@@ -279,7 +287,7 @@ TEST(PaintedValue, IsWhatIsFeltAndHowMuchOfItIsPaint) { // K23
     const Vec3 own(anywhere(random), anywhere(random), anywhere(random));
     const PaintedValue value =
         paintedValue(scene, MaterialChannel::stiffness, own + Vec3(0.5, 0, 0));
-    ASSERT_NEAR(value.felt, map.at(own, base).stiffness, 1e-6);
+    ASSERT_NEAR(value.value, map.at(own, base).stiffness, 1e-6);
     if (std::abs(own.norm() - 0.03) < 0.002) {
       ASSERT_NEAR(value.weight, 1, 1e-9);
     }
@@ -291,7 +299,7 @@ TEST(PaintedValue, IsWhatIsFeltAndHowMuchOfItIsPaint) { // K23
   EXPECT_GT(painted, 100);
 }
 
-TEST(PaintedValue, WhatWasAddedIsPaintThoughItCoversNothing) {
+TEST(PaintedValue, CountsAddedValuesAsPaintWithoutCoverage) {
   Scene scene;
   scene.objects.push_back(objectOf(sheet(1, 1, 1)));
   MaterialMap map(Vec3::Zero(), 1e-3);
@@ -301,11 +309,11 @@ TEST(PaintedValue, WhatWasAddedIsPaintThoughItCoversNothing) {
   scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
   const PaintedValue value =
       paintedValue(scene, MaterialChannel::stiffness, Vec3::Constant(3.5e-3));
-  EXPECT_NEAR(value.felt, 800, 1e-9);
+  EXPECT_NEAR(value.value, 800, 1e-9);
   EXPECT_GT(value.weight, 0.1);
 }
 
-TEST(SurfacePick, AFaceOfTheJointMeshIsAFaceOfOneObject) {
+TEST(SurfacePick, FaceOfTheJointMeshBelongsToOneObject) {
   Scene scene;
   scene.objects = {objectOf(sheet(1, 1, 1)), objectOf(sheet(1, 1, 3))};
   const auto second = objectPointOf(scene, {5, Vec3(0.2, 0.3, 0.5)});

@@ -17,7 +17,7 @@ double longestEdge(const TriangleMesh& mesh) {
   return longest;
 }
 
-TEST(RefinedSurface, IsTheSameSurfaceInTrianglesThatAreSmallEnough) {
+TEST(RefinedSurface, KeepsTheSurfaceInSmallEnoughTriangles) {
   const TriangleMesh coarse = box(Vec3(0.1, 0.04, 0.002), 1);
   const RefinedSurface fine = refined(coarse, 0.003);
   EXPECT_LE(longestEdge(fine.mesh), 0.003);
@@ -45,7 +45,7 @@ TEST(RefinedSurface, StaysClosed) {
   }
 }
 
-TEST(RefinedSurface, TextureCoordinatesAndNormalsAreThoseOfTheCoarseFaces) {
+TEST(RefinedSurface, TextureCoordinatesAndNormalsMatchTheCoarseFaces) {
   TriangleMesh coarse = sheet(0.1, 0.06, 1);
   for (std::size_t f = 0; f < coarse.triangles.size(); ++f) {
     std::array<Vec2, 3> uv;
@@ -63,7 +63,7 @@ TEST(RefinedSurface, TextureCoordinatesAndNormalsAreThoseOfTheCoarseFaces) {
     }
 }
 
-TEST(RefinedSurface, IsBoundedWhateverIsAskedFor) {
+TEST(RefinedSurface, IsBoundedForEveryRequest) {
   EXPECT_LT(refined(box(Vec3(1, 1, 1), 1), 1e-6, 10'000).mesh.triangles.size(), 25'000U);
   TriangleMesh needle;
   needle.positions = {Vec3::Zero(), Vec3(1000, 0, 0), Vec3(500, 1e-9, 0)};
@@ -75,7 +75,7 @@ TEST(RefinedSurface, IsBoundedWhateverIsAskedFor) {
   EXPECT_THROW(refined(dense, NAN), std::invalid_argument);
 }
 
-TEST(RefinedSurface, LeavesOutWhatIsNotFinite) {
+TEST(RefinedSurface, LeavesOutNonFiniteTriangles) {
   TriangleMesh mesh = sheet(0.1, 0.1, 2);
   mesh.positions[0].x() = NAN;
   EXPECT_LT(refined(mesh, 1).mesh.triangles.size(), mesh.triangles.size());

@@ -1,4 +1,4 @@
-// Round lengths of the scale bar, and letters that can be read on any ground.
+// Round lengths of the scale bar, and legible letters on any ground.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -6,12 +6,12 @@
 #include <vtkPolyDataMapper2D.h>
 
 #include "visualization/layers/scale_layer.h"
-#include "visualization/values/lettering.h"
+#include "visualization/values/text_style.h"
 
 namespace patina {
 namespace {
 
-TEST(ScaleLayer, ItsLengthIsTheLongestRoundOneThatFits) {
+TEST(ScaleLayer, LengthIsTheLongestRoundOneThatFits) {
   for (double most = 1.7e-7; most < 30; most *= 1.013) {
     const double length = roundLength(most);
     EXPECT_LE(length, most * (1 + 1e-12));
@@ -21,8 +21,8 @@ TEST(ScaleLayer, ItsLengthIsTheLongestRoundOneThatFits) {
   }
 }
 
-// A view that comes to the front is drawn by its window before it has a size of its own.
-TEST(ScaleLayer, CanBeDrawnBeforeItsPictureHasAHeight) {
+// A view that becomes visible is drawn by its window before it has a size.
+TEST(ScaleLayer, CanBeDrawnBeforeThePictureHasAHeight) {
   const vtkNew<vtkRenderer> overlay;
   const vtkNew<vtkCamera> camera;
   ScaleLayer layer(*overlay);
@@ -39,7 +39,7 @@ TEST(ScaleLayer, CanBeDrawnBeforeItsPictureHasAHeight) {
   EXPECT_GT(drawn, 0);
 }
 
-TEST(Lettering, ContrastIsThatOfWcag) {
+TEST(TextStyle, ContrastFollowsWcag) {
   EXPECT_NEAR(contrastOf({0, 0, 0}, {1, 1, 1}), 21, 1e-9);
   EXPECT_NEAR(contrastOf({0.3, 0.6, 0.9}, {0.3, 0.6, 0.9}), 1, 1e-12);
   // #777777 on white is the well-known grey that just fails: 4.48.
@@ -47,17 +47,17 @@ TEST(Lettering, ContrastIsThatOfWcag) {
   EXPECT_NEAR(contrastOf({1, 1, 1}, {grey, grey, grey}), 4.48, 0.005);
 }
 
-TEST(Lettering, EveryColourBecomesLegibleOnEveryGroundAndKeepsItsHueWhereItCan) {
-  for (const palette::Ground& ground : {palette::kLight, palette::kDark}) {
-    for (const palette::Color& behind : {ground.low, ground.high, ground.plate})
+TEST(TextStyle, MakesEveryColourLegibleAndKeepsItsHueIfPossible) {
+  for (const palette::BackgroundStyle& ground : {palette::kLight, palette::kDark}) {
+    for (const palette::Color& behind : {ground.low, ground.high, ground.text_background})
       EXPECT_GE(contrastOf(ground.text, behind), 4.5);
     for (double r = 0; r <= 1; r += 0.1)
       for (double g = 0; g <= 1; g += 0.1)
         for (double b = 0; b <= 1; b += 0.1) {
           const palette::Color color{r, g, b}, made = legible(color, ground);
-          for (const palette::Color& behind : {ground.low, ground.high, ground.plate})
+          for (const palette::Color& behind : {ground.low, ground.high, ground.text_background})
             EXPECT_GE(contrastOf(made, behind), 4.5) << r << ' ' << g << ' ' << b;
-          if (contrastOf(color, ground.plate) >= 4.8) {
+          if (contrastOf(color, ground.text_background) >= 4.8) {
             EXPECT_EQ(made, color);
           }
         }

@@ -1,4 +1,4 @@
-// Where contact is seen when it is felt elsewhere (K12).
+// Visible contact point if the tip touches an offset surface (K12).
 #include <gtest/gtest.h>
 
 #include "visualization/layers/tool_layer.h"
@@ -6,7 +6,7 @@
 namespace patina {
 namespace {
 
-// A plane z = 0, felt at z = reach by a tip `depth` below that.
+// A plane z = 0, touched at z = reach by a tip `depth` below that.
 ToolSample pressed(double reach, double depth) {
   ToolSample sample;
   sample.contact = true;
@@ -18,7 +18,7 @@ ToolSample pressed(double reach, double depth) {
   return sample;
 }
 
-TEST(SeenContact, IsOnTheOriginalSurfaceWhateverTheOffset) {
+TEST(SeenContact, IsOnTheOriginalSurfaceForEveryOffset) {
   for (const double reach : {0.0, 0.5e-3, 3e-3})
     for (const double depth : {0.1e-3, 1e-3, 5e-3}) {
       const ToolSample sample = pressed(reach, depth);
@@ -26,9 +26,9 @@ TEST(SeenContact, IsOnTheOriginalSurfaceWhateverTheOffset) {
     }
 }
 
-TEST(SeenContact, IsHeldBackByFrictionWithTheContactPoint) {
+TEST(SeenContact, LagsByFrictionLikeTheContactPoint) {
   ToolSample sample = pressed(2e-3, 1e-3);
-  const Vec3 back(-0.4e-3, 0.3e-3, 0); // of the VCP along the surface
+  const Vec3 back(-0.4e-3, 0.3e-3, 0); // shift of the VCP along the surface
   sample.vcp += back;
   EXPECT_LT((seenContact(sample) - (sample.surface + back)).norm(), 1e-15);
 }

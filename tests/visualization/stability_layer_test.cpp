@@ -30,7 +30,7 @@ TEST(StabilityColors, ArePaleAtOneWarmBelowAndCoolAbove) {
   EXPECT_GT(colorOf(2)[2], colorOf(2)[0] + 0.2);
 }
 
-TEST(StabilityColors, HalfAndTwiceAreAsFarFromOne) {
+TEST(StabilityColors, AreEquallyFarFromOneAtHalfAndTwice) {
   const auto table = stabilityColors();
   const int one = static_cast<int>(table->GetIndex(1));
   EXPECT_EQ(one, 127);
@@ -38,14 +38,14 @@ TEST(StabilityColors, HalfAndTwiceAreAsFarFromOne) {
               static_cast<double>(table->GetIndex(2) - one), 1.0);
 }
 
-TEST(StabilityColors, TheUnknownIsGreyAndDarkerThanAnyRatio) {
+TEST(StabilityColors, UnknownIsGreyAndDarkerThanAnyRatio) {
   const Vec3 unknown = colorOf(std::nan(""));
   EXPECT_LT(unknown.maxCoeff() - unknown.minCoeff(), 0.1);
   for (double ratio = 0.25; ratio <= 4; ratio *= 1.1)
     EXPECT_GT(colorOf(ratio).maxCoeff(), unknown.maxCoeff() + 0.1);
 }
 
-TEST(StabilityLayer, KeepsOneValueAVertexWithinWhatIsShown) {
+TEST(StabilityLayer, KeepsOneValueAVertexWithinTheShownRange) {
   const vtkNew<vtkRenderer> scene, overlay;
   StabilityLayer layer(*scene, *overlay);
   const TriangleMesh mesh = icosphere(0.03, 2);
@@ -54,19 +54,19 @@ TEST(StabilityLayer, KeepsOneValueAVertexWithinWhatIsShown) {
   ratio[2] = 0;
   ratio[3] = NAN;
   EXPECT_FALSE(layer.hasTags());
-  ratio[4] = kSlips;
-  ratio[5] = kUntouched;
+  ratio[4] = kUnstable;
+  ratio[5] = kNotTouchable;
   layer.update(mesh, ratio);
   auto* data = vtkPolyDataMapper::SafeDownCast(layer.surface().GetMapper())->GetInput();
   auto* values = data->GetPointData()->GetScalars();
   ASSERT_EQ(values->GetNumberOfTuples(), static_cast<vtkIdType>(ratio.size()));
   EXPECT_STREQ(values->GetName(), "stability [K*/K]");
   EXPECT_EQ(values->GetTuple1(0), 0.5);
-  EXPECT_EQ(values->GetTuple1(1), kMostRatioShown);
-  EXPECT_EQ(values->GetTuple1(2), kLeastRatioShown);
+  EXPECT_EQ(values->GetTuple1(1), kMaxRatioShown);
+  EXPECT_EQ(values->GetTuple1(2), kMinRatioShown);
   EXPECT_TRUE(std::isnan(values->GetTuple1(3)));
-  EXPECT_LT(values->GetTuple1(4), kLeastRatioShown) << "a colour of its own";
-  EXPECT_GT(values->GetTuple1(5), kMostRatioShown) << "and another";
+  EXPECT_LT(values->GetTuple1(4), kMinRatioShown) << "a colour of its own";
+  EXPECT_GT(values->GetTuple1(5), kMaxRatioShown) << "and another";
   EXPECT_TRUE(layer.hasTags());
   EXPECT_TRUE(layer.bar().GetDrawBelowRangeSwatch() && layer.bar().GetDrawAboveRangeSwatch());
   auto* normals = data->GetPointData()->GetNormals();

@@ -18,7 +18,7 @@ Vec3 normalAt(vtkPolyData* data, vtkIdType i) {
   return Vec3(data->GetPointData()->GetNormals()->GetTuple3(i));
 }
 
-TEST(SurfaceData, ASphereKeepsItsVerticesAndHasRadialNormals) {
+TEST(SurfaceData, SphereKeepsItsVerticesAndHasRadialNormals) {
   const TriangleMesh mesh = icosphere(0.03, 16);
   const auto data = surfaceData(mesh);
   EXPECT_EQ(data->GetNumberOfPoints(), static_cast<vtkIdType>(mesh.positions.size()));
@@ -27,7 +27,7 @@ TEST(SurfaceData, ASphereKeepsItsVerticesAndHasRadialNormals) {
     ASSERT_GT(normalAt(data, i).dot(Vec3(data->GetPoint(i)).normalized()), 0.999);
 }
 
-TEST(SurfaceData, ABoxIsSplitAtItsEdgesIntoSixFlatSides) {
+TEST(SurfaceData, BoxIsSplitAtItsEdgesIntoSixFlatSides) {
   const auto data = surfaceData(box(Vec3(1, 2, 3), 4));
   // 5 x 5 vertices on each of six sides, none shared across an edge.
   EXPECT_EQ(data->GetNumberOfPoints(), 6 * 25);
@@ -35,7 +35,7 @@ TEST(SurfaceData, ABoxIsSplitAtItsEdgesIntoSixFlatSides) {
     ASSERT_NEAR(normalAt(data, i).cwiseAbs().maxCoeff(), 1, 1e-6);
 }
 
-TEST(SurfaceData, TrianglesThatAreNotFiniteAreNotDrawn) {
+TEST(SurfaceData, LeavesOutNonFiniteTriangles) {
   TriangleMesh mesh = icosphere(1, 2);
   mesh.positions[0][1] = std::numeric_limits<double>::quiet_NaN();
   std::size_t touched = 0;
@@ -48,7 +48,7 @@ TEST(SurfaceData, TrianglesThatAreNotFiniteAreNotDrawn) {
     EXPECT_TRUE(std::isfinite(bound));
 }
 
-TEST(SurfaceData, AnEmptyMeshIsAnEmptyPicture) {
+TEST(SurfaceData, EmptyMeshGivesAnEmptyPicture) {
   EXPECT_EQ(surfaceData(TriangleMesh{})->GetNumberOfPolys(), 0);
 }
 

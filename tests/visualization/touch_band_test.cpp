@@ -1,4 +1,4 @@
-// Where an offset or a magnet acts, in words.
+// The range of an offset or a magnet, in words.
 #include <gtest/gtest.h>
 
 #include "visualization/values/touch_band.h"
@@ -13,7 +13,7 @@ SurfaceField fieldOf(double voxel, double band) {
   return field;
 }
 
-TEST(TouchBand, IsAbsentWhereTheSurfaceIsFeltWhereItIs) {
+TEST(TouchBand, IsAbsentWithoutOffsetAndMagnet) {
   EXPECT_FALSE(touchBand({}));
   HapticProperties zero;
   zero.offset = 0;
@@ -31,7 +31,7 @@ TEST(TouchBand, ReachesToTheOffsetOrTheMagnetsRange) {
   EXPECT_EQ(touchBand(haptics), (TouchBand{TouchBand::Kind::magnet, 3e-3}));
 }
 
-TEST(TouchBand, LegendSaysItsValueAndWhenTheFieldDoesNotHoldIt) {
+TEST(TouchBand, LegendShowsItsValueAndWhetherTheFieldCoversIt) {
   const SurfaceField field = fieldOf(1e-3, 8); // isoSurface is closed up to band - 2 voxels
   EXPECT_EQ(bandLegend({TouchBand::Kind::offset, 2.5e-3}, field), "offset 2.5 mm");
   EXPECT_EQ(bandLegend({TouchBand::Kind::magnet, 6e-3}, field), "magnet range 6 mm");

@@ -14,9 +14,9 @@ std::vector<Vec3> allSides() {
   return sides;
 }
 
-TEST(ViewCube, SaysOfEachSideEdgeAndCornerWhichItIs) {
+TEST(ViewCube, IdentifiesEachSideEdgeAndCorner) {
   for (const Vec3& side : allSides()) {
-    // In the middle of its side, or of its part of an edge or a corner.
+    // A point in the middle of a side, or of an edge's or a corner's part.
     Vec3 on = 0.5 * 0.83 * side;
     int axis = 0;
     side.cwiseAbs().maxCoeff(&axis);
@@ -28,13 +28,13 @@ TEST(ViewCube, SaysOfEachSideEdgeAndCornerWhichItIs) {
   }
 }
 
-TEST(ViewCube, IsMissedBesideItAndBehindTheEye) {
+TEST(ViewCube, IsMissedBesideTheCubeAndBehindTheEye) {
   EXPECT_FALSE(cubeSideAt({Vec3(0.6, 0, 3), -Vec3::UnitZ()}).has_value());
   EXPECT_FALSE(cubeSideAt({Vec3(0, 0, 3), Vec3::UnitZ()}).has_value());
   EXPECT_FALSE(cubeSideAt({Vec3(0, 0, 3), Vec3(0.3, 0, -1).normalized()}).has_value());
 }
 
-TEST(TurnOfACamera, LooksFromThatSideUprightAndKeepsWhatItLooksAtAndHowFar) {
+TEST(TurnOfACamera, EndsUprightOnTheSideAndKeepsFocusAndDistance) {
   for (const Vec3& side : allSides()) {
     const vtkNew<vtkCamera> camera;
     camera->SetFocalPoint(0.1, 0.2, 0.3);
@@ -50,7 +50,7 @@ TEST(TurnOfACamera, LooksFromThatSideUprightAndKeepsWhatItLooksAtAndHowFar) {
   }
 }
 
-TEST(TurnOfACamera, IsThatOfThePresetsForTheSixSides) {
+TEST(TurnOfACamera, MatchesThePresetsForTheSixSides) {
   const std::pair<ViewPreset, Vec3> sides[] = {
       {ViewPreset::plus_x, Vec3::UnitX()}, {ViewPreset::minus_x, -Vec3::UnitX()},
       {ViewPreset::plus_y, Vec3::UnitY()}, {ViewPreset::minus_y, -Vec3::UnitY()},

@@ -20,7 +20,7 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 [[noreturn]] void become(const std::vector<std::string>& words, const Settings& settings) {
   for (const auto& [name, value] : settings) ::setenv(name.c_str(), value.c_str(), 1);
   ::setenv("LD_PRELOAD", test::preloadable("fault_shim.so").c_str(), 1);
-  // The sanitizers' runtime wants to be the first library.
+  // The sanitizers' runtime must be the first library.
   const char* options = std::getenv("ASAN_OPTIONS");
   const std::string with = std::string(options ? options : "") + ":verify_asan_link_order=0";
   ::setenv("ASAN_OPTIONS", with.c_str(), 1);

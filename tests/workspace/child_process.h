@@ -8,7 +8,7 @@
 namespace patina {
 
 struct ChildFault {
-  std::string kind; // of fault_shim; "" = none
+  std::string kind; // kind of fault_shim's fault; "" = none
   int at = 0;
 };
 
@@ -18,11 +18,11 @@ struct ChildEnd {
   std::string out, err;
 };
 
-// Without a real flush: only the program fails here, not the machine.
+// Runs the child without a real flush: only the program fails here, not the machine.
 ChildEnd runChild(const std::string& command, const std::filesystem::path& folder,
                   const ChildFault& fault);
 
-// "strokes" running; what it reports can be read from `out`. The caller kills and reaps it.
+// Runs "strokes"; its reports can be read from `out`. The caller kills and reaps it.
 struct StrokesChild {
   pid_t pid = -1;
   int out = -1;

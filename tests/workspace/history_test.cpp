@@ -1,6 +1,7 @@
-// Paint, states and the journal of a workspace: they come back, and what is wrong with them is
-// said.
+// Paint, states and the journal of a workspace are loaded again, and faults in them are reported.
+#include <atomic>
 #include <chrono>
+#include <thread>
 
 #include "core/sha256.h"
 #include "workspace/workspace_support.h"
@@ -41,7 +42,7 @@ class HistoryTest : public WorkspaceTest {
   std::string state;
 };
 
-TEST_F(HistoryTest, SceneJournalAndStatesComeBack) {
+TEST_F(HistoryTest, ReloadsSceneJournalAndStates) {
   const OpenedWorkspace found = openWorkspace(folder);
   EXPECT_TRUE(same(found.scene, later));
   EXPECT_EQ(found.event, 2u);
@@ -60,7 +61,7 @@ TEST_F(HistoryTest, MovesWithItsFolder) {
   EXPECT_TRUE(same(openWorkspace(root / "elsewhere").scene, later));
 }
 
-TEST_F(HistoryTest, AHistoryIsWrittenIntoAnotherFolderAtOnce) {
+TEST_F(HistoryTest, WritesAHistoryIntoAnotherFolderAtOnce) {
   const OpenedWorkspace found = openWorkspace(folder);
   const fs::path other = root / "other";
   saveWorkspace(sceneWithObjects(0.02), other);
@@ -70,13 +71,13 @@ TEST_F(HistoryTest, AHistoryIsWrittenIntoAnotherFolderAtOnce) {
   const OpenedWorkspace copy = openWorkspace(other);
   EXPECT_TRUE(same(copy.scene, later));
   EXPECT_EQ(copy.journal, found.journal);
-  EXPECT_NE(copy.journal_file, other / "journal-1.jsonl"); // the old history's
+  EXPECT_NE(copy.journal_file, other / "journal-1.jsonl"); // a file of the old history
   EXPECT_FALSE(fs::exists(other / "journal-1.jsonl"));
 }
 
-TEST_F(HistoryTest, FilesThatAStateOrTheJournalNamesStayAndOthersGo) {
+TEST_F(HistoryTest, KeepsReferencedFilesAndRemovesOthers) {
   const OpenedWorkspace found = openWorkspace(folder);
-  storeState(paintedScene(0.05, 9, With::material), 9, folder); // of an edit that failed
+  storeState(paintedScene(0.05, 9, With::material), 9, folder); // left by an edit that failed
   writeFileAtomically(folder / "paint" / "notes.txt", "mine");
   saveWorkspace(start, 3, {found.states.front()}, folder);
   EXPECT_TRUE(same(loadState(folder, state), later)); // only the journal names it
@@ -100,15 +101,15 @@ TEST_F(HistoryTest, UnchangedFilesAreNotWrittenAgain) {
   EXPECT_EQ(loadWorkspace(folder).haptics.stiffness, 321);
 }
 
-// What was loaded once is the same value, so that what is built from a mesh can be kept.
-TEST_F(HistoryTest, EqualFilesAreOneValueInMemory) {
+// Equal files are loaded as one value, so that data computed from a mesh can be kept.
+TEST_F(HistoryTest, SharesEqualFilesInMemory) {
   const OpenedWorkspace found = openWorkspace(folder);
   const Scene again = loadState(folder, state);
   EXPECT_EQ(found.scene.objects[0].mesh, again.objects[0].mesh);
   EXPECT_EQ(found.scene.objects[0].paint->color, again.objects[0].paint->color);
 }
 
-TEST_F(HistoryTest, OnlyALayoutOfItsOwnIsStored) {
+TEST_F(HistoryTest, StoresOnlyAnOwnLayout) {
   TriangleMesh mesh = box(Vec3(1, 1, 1));
   mesh.corner_uvs = someLayout(mesh.triangles.size(), 4);
   Scene scene;
@@ -123,7 +124,7 @@ TEST_F(HistoryTest, OnlyALayoutOfItsOwnIsStored) {
     EXPECT_NE(item.path().extension(), ".ply");
 }
 
-TEST_F(HistoryTest, ALayoutOutsideTheUnitSquareIsNotSaved) {
+TEST_F(HistoryTest, RefusesALayoutOutsideTheUnitSquare) {
   Scene scene = later;
   ObjectPaint paint = *later.objects[0].paint;
   CornerUvs uvs = *paint.layout.uvs;
@@ -134,16 +135,16 @@ TEST_F(HistoryTest, ALayoutOutsideTheUnitSquareIsNotSaved) {
   EXPECT_TRUE(same(openWorkspace(folder).scene, later));
 }
 
-TEST_F(HistoryTest, ATornLastRecordIsLeftOutWithANote) {
+TEST_F(HistoryTest, LeavesOutATornLastRecordWithANote) {
   const std::string text = readFile(journal());
   writeFileAtomically(journal(), text.substr(0, text.size() - 3));
   const OpenedWorkspace found = openWorkspace(folder);
   EXPECT_EQ(found.journal.size(), 2u);
   ASSERT_EQ(found.notes.size(), 1u);
-  EXPECT_TRUE(says(found.notes[0], "journal-1.jsonl: the last record was not written whole"));
+  EXPECT_TRUE(says(found.notes[0], "journal-1.jsonl: the last record is incomplete"));
 }
 
-TEST_F(HistoryTest, WhatIsWrongWithTheJournalIsSaid) {
+TEST_F(HistoryTest, ReportsFaultsOfTheJournal) {
   const std::string text = readFile(journal());
   std::string damaged = text;
   damaged[text.size() / 2] ^= 4;
@@ -159,13 +160,13 @@ TEST_F(HistoryTest, WhatIsWrongWithTheJournalIsSaid) {
   EXPECT_TRUE(same(loadWorkspace(folder), later)); // the scene needs no journal
 }
 
-TEST_F(HistoryTest, TheJournalOfAnotherWorkspaceIsRefused) {
-  // Another beginning.
+TEST_F(HistoryTest, RefusesAnotherWorkspacesJournal) {
+  // The history has another beginning.
   saveWorkspace(sceneWithObjects(0.02), root / "other");
   fs::copy_file(root / "other" / "journal-1.jsonl", journal(),
                 fs::copy_options::overwrite_existing);
   EXPECT_TRUE(says(errorOfOpening(), "is the journal of another workspace"));
-  // The same beginning, other edits.
+  // It has the same beginning, but other edits.
   fs::remove_all(root / "other");
   saveWorkspace(start, root / "other");
   JournalWriter writer(root / "other" / "journal-1.jsonl", 0);
@@ -201,7 +202,7 @@ TEST_F(HistoryTest, EveryBrokenFileIsNamed) {
   }
 }
 
-TEST_F(HistoryTest, NoPathLeavesTheFolder) {
+TEST_F(HistoryTest, RefusesPathsOutsideTheFolder) {
   const std::string good = readFile(json());
   for (const auto& [part, with] : std::vector<std::pair<std::string, std::string>>{
            {"paint", "color"}, {"paint", "material"}, {"paint", "layout"}, {"states", "0-"}}) {
@@ -225,7 +226,7 @@ TEST_F(HistoryTest, NoPathLeavesTheFolder) {
                    "leaves the workspace's folder"));
 }
 
-TEST_F(HistoryTest, NothingBehindALinkIsTouched) {
+TEST_F(HistoryTest, ChangesNothingBehindALink) {
   const fs::path others = root / "others", file = others / "cup-0123456789abcdef.ply",
                  bare = root / "bare";
   fs::create_directories(others);
@@ -237,25 +238,36 @@ TEST_F(HistoryTest, NothingBehindALinkIsTouched) {
   EXPECT_TRUE(fs::exists(file));
 }
 
-TEST_F(HistoryTest, AnotherProgramsHistoryIsNotReplaced) {
+TEST_F(HistoryTest, KeepsAnotherProgramsHistory) {
   const OpenedWorkspace found = openWorkspace(folder);
   JournalWriter held(found.journal_file, 3);
   EXPECT_TRUE(says(errorOf([&] { saveWorkspace(start, folder); }), "another program is writing"));
-  saveWorkspace(start, 3, found.states, folder); // its own
+  saveWorkspace(start, 3, found.states, folder); // its own history
 }
 
-TEST_F(HistoryTest, AReplacedWorkspaceIsNotSavedOverByItsOldEditor) {
+TEST_F(HistoryTest, IsReadWhileAnotherProgramSavesIt) {
+  std::atomic<bool> ends{false};
+  std::thread writer([&] {
+    for (unsigned i = 0; !ends; ++i)
+      saveWorkspace(paintedScene(0.05, 3 + i % 2, With::all), folder);
+  });
+  for (int i = 0; i < 200; ++i) EXPECT_EQ(errorOfOpening(), "");
+  ends = true;
+  writer.join();
+}
+
+TEST_F(HistoryTest, OldEditorDoesNotOverwriteAReplacedWorkspace) {
   const OpenedWorkspace found = openWorkspace(folder);
   saveWorkspace(sceneWithObjects(0.02), folder);
   EXPECT_NE(errorOf([&] { saveWorkspace(later, 2, found.states, folder); }), "");
   EXPECT_TRUE(same(openWorkspace(folder).scene, sceneWithObjects(0.02)));
 }
 
-TEST_F(HistoryTest, VersionOneOpensAndBecomesThePresentOne) {
+TEST_F(HistoryTest, UpgradesVersionOne) {
   fs::remove_all(folder);
   const Scene scene = sceneWithObjects(0.05);
   saveWorkspace(scene, folder);
-  // What version 1 wrote: no history, 8 digits in names.
+  // Version 1 wrote no history and 8 digits in names.
   std::string text = readFile(json());
   text.replace(text.find("\"version\": 3"), 12, "\"version\": 1");
   text.resize(text.find(",\n  \"event\""));
@@ -277,9 +289,8 @@ TEST_F(HistoryTest, VersionOneOpensAndBecomesThePresentOne) {
   EXPECT_EQ(filesIn("meshes"), 2u);
 }
 
-// Version 2: contact had a potential in place of a proxy, and a side of its own that could be
-// switched off.
-TEST_F(HistoryTest, VersionTwoOpensWithTheContactOfToday) {
+// Version 2: contact had a potential in place of a proxy, and a side that could be switched off.
+TEST_F(HistoryTest, OpensVersionTwoWithThePresentContact) {
   const auto asVersionTwo = [](std::string text) {
     text.replace(text.find("\"version\": 3"), 12, "\"version\": 2");
     const std::string_view key = "\"values\": {";
@@ -299,7 +310,7 @@ TEST_F(HistoryTest, VersionTwoOpensWithTheContactOfToday) {
   EXPECT_TRUE(same(openWorkspace(folder).scene, later));
 }
 
-TEST_F(HistoryTest, ThePresentVersionKnowsNoKeyOfAnOlderOne) {
+TEST_F(HistoryTest, PresentVersionRefusesOlderKeys) {
   std::string text = readFile(json());
   const std::string_view key = "\"values\": {";
   text.insert(text.find(key) + key.size(), R"("history": "off", )");
@@ -323,14 +334,14 @@ class RecoverTest : public HistoryTest {
   }
 };
 
-TEST_F(RecoverTest, AWholeWorkspaceIsJustOpened) {
+TEST_F(RecoverTest, OpensAnIntactWorkspaceNormally) {
   const OpenedWorkspace found = openWorkspace(folder, true);
   EXPECT_TRUE(found.notes.empty());
   EXPECT_TRUE(same(found.scene, later));
   EXPECT_EQ(found.journal.size(), 3u);
 }
 
-TEST_F(RecoverTest, RecordsBeforeTheDamageAreKeptIfTheSavedOnesAreAmongThem) {
+TEST_F(RecoverTest, KeepsRecordsBeforeTheDamageIfTheyIncludeTheSavedOnes) {
   const std::string text = readFile(journal());
   std::string damaged = text;
   damaged[text.find("\"undo\"")] = 'x';
@@ -338,11 +349,11 @@ TEST_F(RecoverTest, RecordsBeforeTheDamageAreKeptIfTheSavedOnesAreAmongThem) {
   const OpenedWorkspace found = recovered();
   EXPECT_TRUE(same(found.scene, later));
   EXPECT_EQ(found.journal.size(), 2u);
-  JournalWriter(found.journal_file, 2).append(RedoEvent{}); // and it goes on
+  JournalWriter(found.journal_file, 2).append(RedoEvent{}); // appending goes on
   EXPECT_EQ(openWorkspace(folder).journal.size(), 3u);
 }
 
-TEST_F(RecoverTest, WithoutItsJournalTheSavedSceneRemains) {
+TEST_F(RecoverTest, KeepsTheSavedSceneWithoutAJournal) {
   fs::remove(journal());
   const OpenedWorkspace found = recovered();
   EXPECT_TRUE(same(found.scene, later));
@@ -351,7 +362,7 @@ TEST_F(RecoverTest, WithoutItsJournalTheSavedSceneRemains) {
   EXPECT_TRUE(same(openWorkspace(folder).scene, later));
 }
 
-TEST_F(RecoverTest, ABrokenSceneIsMadeAgainFromAStateAndTheJournal) {
+TEST_F(RecoverTest, RebuildsABrokenSceneFromAStateAndTheJournal) {
   fs::resize_file(only("paint", "color"), 100);
   const OpenedWorkspace found = recovered();
   EXPECT_TRUE(same(found.scene, start));
@@ -359,7 +370,7 @@ TEST_F(RecoverTest, ABrokenSceneIsMadeAgainFromAStateAndTheJournal) {
   EXPECT_EQ(found.journal.size(), 3u);
 }
 
-TEST_F(RecoverTest, WithoutAHistoryTheWholePartsRemain) {
+TEST_F(RecoverTest, KeepsIntactPartsWithoutAHistory) {
   fs::remove(journal());
   fs::resize_file(only("paint", "color"), 100);
   fs::remove(only("meshes", "crate"));
@@ -370,7 +381,7 @@ TEST_F(RecoverTest, WithoutAHistoryTheWholePartsRemain) {
   EXPECT_TRUE(same(*found.scene.objects[0].paint->material, *later.objects[0].paint->material));
 }
 
-TEST_F(RecoverTest, WithoutWorkspaceJsonTheJournalAndItsStatesRemain) {
+TEST_F(RecoverTest, KeepsJournalAndStatesWithoutWorkspaceJson) {
   writeFileAtomically(json(), "{");
   const OpenedWorkspace found = recovered();
   EXPECT_TRUE(same(found.scene, later));
@@ -380,7 +391,7 @@ TEST_F(RecoverTest, WithoutWorkspaceJsonTheJournalAndItsStatesRemain) {
   EXPECT_EQ(openWorkspace(folder).journal.size(), 3u);
 }
 
-TEST_F(RecoverTest, WithoutBothTheNewestStateRemains) {
+TEST_F(RecoverTest, KeepsTheNewestStateWithoutBoth) {
   fs::remove(json());
   fs::remove(journal());
   const OpenedWorkspace found = recovered();
@@ -388,7 +399,7 @@ TEST_F(RecoverTest, WithoutBothTheNewestStateRemains) {
   EXPECT_EQ(found.event, 0u);
 }
 
-TEST_F(RecoverTest, WhereNothingCanBeReadThatIsSaid) {
+TEST_F(RecoverTest, ReportsThatNothingIsReadable) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   EXPECT_TRUE(says(errorOf([&] { openWorkspace(folder, true); }), "nothing was recovered"));

@@ -1,5 +1,5 @@
 #include "pictures/picture_file.h"
-#include "workspace/painted_image.h"
+#include "workspace/paint_files.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -12,8 +12,8 @@
 namespace patina {
 namespace {
 
-// libpng jumps over the destructors of its callers when a file is broken; the few bytes that this
-// costs are not ours to free.
+// libpng jumps over the destructors of its callers when a file is broken; these few bytes are not
+// our leak.
 using test::LeaksOfOthers;
 
 class ImageFileTest : public WorkspaceTest {};
@@ -29,7 +29,7 @@ bool loaded(const char* library) {
   return says(readFile("/proc/self/maps"), library);
 }
 
-TEST_F(ImageFileTest, Png16ComesBackToItsLastBit) {
+TEST_F(ImageFileTest, Png16ReadsBackBitForBit) {
   for (const int channels : {1, 2, 3, 4}) {
     const Picture picture = somePicture(301, 173, channels);
     writePicture(root / "p.png", picture);
@@ -42,7 +42,33 @@ TEST_F(ImageFileTest, Png16ComesBackToItsLastBit) {
   }
 }
 
-TEST_F(ImageFileTest, PngClampsWhatItCannotHold) {
+// CRC-32 of a PNG's chunk.
+std::uint32_t checkOf(std::string_view bytes) {
+  std::uint32_t sum = 0xffffffffU;
+  for (const char c : bytes) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (sum & 1 ? 0xedb88320U : 0U);
+  }
+  return ~sum;
+}
+
+void putBigEndian(std::string& bytes, std::size_t at, std::uint32_t value) {
+  for (int k = 0; k < 4; ++k)
+    bytes[at + static_cast<std::size_t>(k)] = static_cast<char>(value >> (24 - 8 * k));
+}
+
+TEST_F(ImageFileTest, PngTooShortForItsSizeIsRefusedWithoutMemoryForIt) {
+  writePicture(root / "p.png", somePicture(8, 8, 1));
+  std::string bytes = readFile(root / "p.png");
+  constexpr std::size_t kHeader = 12; // here begins the first chunk: name, width, height, 5 bytes
+  putBigEndian(bytes, kHeader + 4, 16384);
+  putBigEndian(bytes, kHeader + 8, 16384);
+  putBigEndian(bytes, kHeader + 17, checkOf(std::string_view(bytes).substr(kHeader, 17)));
+  std::ofstream(root / "p.png", std::ios::binary) << bytes;
+  EXPECT_TRUE(says(errorOf([&] { readPicture(root / "p.png"); }), "cannot hold 16384 x 16384"));
+}
+
+TEST_F(ImageFileTest, PngClampsValuesOutOfRange) {
   writePicture(root / "p.png", {2, 2, 1, {-3, 7, 0.5f, std::nanf("")}});
   const Picture read = readPicture(root / "p.png");
   EXPECT_EQ(read.texel[0], 0);
@@ -51,7 +77,7 @@ TEST_F(ImageFileTest, PngClampsWhatItCannotHold) {
   EXPECT_EQ(read.texel[3], 0);
 }
 
-TEST_F(ImageFileTest, ExrPicturesComeBackBitForBit) {
+TEST_F(ImageFileTest, ExrPicturesReadBackBitForBit) {
   for (const int channels : {1, 2, 3, 4}) {
     Picture picture = somePicture(70, 33, channels);
     picture.texel[0] = -1e30f;
@@ -75,18 +101,18 @@ TEST_F(ImageFileTest, RowsAreCountedFromTheBottom) {
   EXPECT_FLOAT_EQ(picture.texel[2], 10 / 255.0f);
 }
 
-TEST_F(ImageFileTest, PaintedImagesComeBackBitForBit) {
+TEST_F(ImageFileTest, PaintedImagesReadBackBitForBit) {
   for (const int channels : {1, kColorChannels}) {
     const TiledImage image = paintedImage(160, 96, channels, 7);
     const std::string bytes = exrBytes(image);
     EXPECT_EQ(exrBytes(image), bytes); // the name of a file is its hash
     const TiledImage read = parseExr(bytes, channels, "image");
     EXPECT_TRUE(same(image, read));
-    EXPECT_EQ(read.bytes(), image.bytes()); // tiles that nobody painted are not stored
+    EXPECT_EQ(read.bytes(), image.bytes()); // unpainted tiles are not stored
     EXPECT_TRUE(
         says(errorOf([&] { parseExr(bytes, 5 - channels, "image"); }), "is not a painted image"));
   }
-  // Channels must not change places.
+  // The channels must keep their order.
   TiledImage image(64, 64, 4);
   for (int c = 0; c < 4; ++c) image.writable(0)[c] = static_cast<float>(c + 1);
   const TiledImage read = parseExr(exrBytes(image), 4, "image");
@@ -99,7 +125,7 @@ TEST_F(ImageFileTest, ImagesWithNanAreNotStored) {
   EXPECT_THROW(exrBytes(image), Error);
 }
 
-// Every prefix, and many single changes, of each format: an error or a picture, never a crash.
+// Every prefix, and many single changes, of each format give an error or a picture, never a crash.
 TEST_F(ImageFileTest, BrokenFilesAreErrors) {
   writePicture(root / "a.png", somePicture(40, 30, 3));
   writePicture(root / "b.exr", somePicture(40, 30, 3));
@@ -117,7 +143,7 @@ TEST_F(ImageFileTest, BrokenFilesAreErrors) {
       std::string changed = bytes;
       for (int k = 0; k < 3; ++k) changed[random() % changed.size()] = static_cast<char>(random());
       std::ofstream(path) << changed;
-      errorOf([&] { readPicture(path); }); // whatever it says
+      errorOf([&] { readPicture(path); }); // any message
     }
   }
   std::ofstream(root / "empty.png").close();
@@ -130,8 +156,8 @@ TEST_F(ImageFileTest, BrokenFilesAreErrors) {
   EXPECT_TRUE(says(errorOf([&] { parseExr("not one", 1, "i"); }), "i: cannot be read as an EXR"));
 }
 
-// A header may promise anything.
-TEST_F(ImageFileTest, HugeSizesAreRefusedBeforeMemoryIsTaken) {
+// A header may claim any size.
+TEST_F(ImageFileTest, RefusesHugeSizesBeforeAllocation) {
   for (const char* size : {"100000 1", "1 100000", "16384 16384"}) {
     std::ofstream(root / "p.ppm") << "P6 " << size << " 65535\nabc";
     const std::string error = errorOf([&] { readPicture(root / "p.ppm"); });
@@ -148,13 +174,13 @@ TEST_F(ImageFileTest, HugeSizesAreRefusedBeforeMemoryIsTaken) {
   EXPECT_NE(errorOf([&] { readPicture(root / "w.exr"); }), "");
 }
 
-TEST_F(ImageFileTest, OtherNamesAreRefusedForWriting) {
+TEST_F(ImageFileTest, RefusesOtherExtensionsForWriting) {
   EXPECT_TRUE(says(errorOf([&] { writePicture(root / "p.gif", somePicture(2, 2, 1)); }),
                    "must end in .png or .exr"));
 }
 
-// A program away from its libraries says which it misses and where it should be.
-TEST_F(ImageFileTest, AMissingLibraryIsNamed) {
+// A program without its libraries names the missing one and its place.
+TEST_F(ImageFileTest, NamesAMissingLibrary) {
   writePicture(root / "p.png", somePicture(3, 2, 1));
   std::filesystem::create_directories(root / "bin");
   const std::string alone = root / "bin" / "program", err = root / "err";
@@ -167,8 +193,8 @@ TEST_F(ImageFileTest, AMissingLibraryIsNamed) {
   EXPECT_TRUE(says(line, (root / "bin" / "patina_images.so").string()));
 }
 
-// In a process of its own: the others here have loaded it.
-TEST_F(ImageFileTest, TheLibraryIsLoadedWithTheFirstPictureOnly) {
+// This runs in a process of its own: the other tests here have loaded the library.
+TEST_F(ImageFileTest, LoadsTheLibraryWithTheFirstPictureOnly) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command = "PATINA_LIBRARY_PROBE=1 '" + self +
                               "' --gtest_also_run_disabled_tests "

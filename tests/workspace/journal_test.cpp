@@ -19,7 +19,7 @@ const std::vector<JournalEvent>& everyKind() {
 }
 
 std::string textOf(const std::vector<JournalEvent>& events) {
-  std::string text = journalHeading("states/0-a.json");
+  std::string text = journalHeader("states/0-a.json");
   for (std::size_t i = 0; i < events.size(); ++i) text += journalLine(i + 1, events[i]);
   return text;
 }
@@ -28,7 +28,7 @@ bool isWhole(const JournalText& journal) {
   return !journal.torn && journal.damaged_line == 0;
 }
 
-TEST(Journal, EveryKindOfRecordComesBack) {
+TEST(Journal, ReadsBackEveryKindOfRecord) {
   const std::string text = textOf(everyKind());
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 7);
   const JournalText journal = parseJournal(text);
@@ -50,8 +50,8 @@ TEST(Journal, RecordsKeepTheirTimeAndOlderOnesHaveNone) {
   }
 }
 
-// A record's place in the history stays, whatever is left of it.
-TEST(Journal, ValuesOfOlderVersionsAreThoseOfToday) {
+// A record's position in the history stays, even if none of its values is left.
+TEST(Journal, ConvertsValuesOfOlderVersions) {
   const JournalText journal = parseJournal(
       textOf({ValueEdit{{{"history", "off"}, {"contact", "potential"}, {"stiffness", "700"}}},
               ValueEdit{{{"history", "on"}}}, ValueEdit{{{"contact", "ray"}}}}));
@@ -61,7 +61,7 @@ TEST(Journal, ValuesOfOlderVersionsAreThoseOfToday) {
   EXPECT_EQ(journal.events, today);
 }
 
-TEST(Journal, CutAnywhereItsWholeRecordsRemain) {
+TEST(Journal, KeepsWholeRecordsIfCutAnywhere) {
   const std::string text = textOf(everyKind());
   for (std::size_t size = 0; size <= text.size(); ++size) {
     const JournalText journal = parseJournal(text.substr(0, size));
@@ -72,8 +72,8 @@ TEST(Journal, CutAnywhereItsWholeRecordsRemain) {
   }
 }
 
-// After a loss of power a record's end may be on the disk and blocks before it not.
-TEST(Journal, ALastRecordWithZerosInItIsTorn) {
+// After a power failure a record's end may be on the disk and earlier blocks not.
+TEST(Journal, LastRecordWithZerosIsTorn) {
   std::string text = textOf({someStroke(3, 1), someStroke(300, 2)});
   std::fill_n(text.end() - 5000, 4096, '\0');
   const JournalText journal = parseJournal(text);
@@ -81,7 +81,7 @@ TEST(Journal, ALastRecordWithZerosInItIsTorn) {
   EXPECT_EQ(journal.events.size(), 1u);
 }
 
-TEST(Journal, AnyChangedByteIsFoundWithItsLine) {
+TEST(Journal, FindsAnyChangedByteWithItsLine) {
   const std::string text = textOf(everyKind());
   std::size_t line = 1;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -90,7 +90,7 @@ TEST(Journal, AnyChangedByteIsFoundWithItsLine) {
     const JournalText journal = parseJournal(changed);
     ASSERT_FALSE(isWhole(journal)) << at;
     ASSERT_LT(journal.events.size(), line) << at;
-    // The last newline apart, which looks like a record that does not end.
+    // The last newline is left out: without it the last record looks unfinished.
     if (at + 1 < text.size()) {
       ASSERT_EQ(journal.damaged_line, line) << at;
     }
@@ -104,11 +104,11 @@ TEST(Journal, RecordsOutOfOrderAreDamage) {
   EXPECT_EQ(parseJournal(one + one).damaged_line, 2u);
   EXPECT_EQ(parseJournal(one + journalLine(3, UndoEvent{})).damage,
             "record 3 stands where record 2 should");
-  EXPECT_EQ(parseJournal(one + journalHeading("x")).damaged_line, 2u);
+  EXPECT_EQ(parseJournal(one + journalHeader("x")).damaged_line, 2u);
   EXPECT_TRUE(isWhole(parseJournal(one + two)));
 }
 
-TEST(Journal, RecordsThatMeanNothingAreDamageThoughTheirChecksumHolds) {
+TEST(Journal, InvalidRecordsAreDamageEvenWithAValidChecksum) {
   for (const JournalEvent& event : std::vector<JournalEvent>{UndoEvent{0}, RedoEvent{-1}}) {
     const JournalText journal = parseJournal(journalLine(1, event));
     EXPECT_EQ(journal.damaged_line, 1u);
@@ -125,7 +125,7 @@ class JournalFileTest : public WorkspaceTest {
   std::filesystem::path path;
 };
 
-TEST_F(JournalFileTest, AppendedRecordsAreThereAtOnce) {
+TEST_F(JournalFileTest, AppendedRecordsAreOnDiskAtOnce) {
   setenv("SOURCE_DATE_EPOCH", "1764000000", 1);
   JournalWriter writer(path, 0);
   for (std::size_t i = 0; i < everyKind().size(); ++i) {
@@ -139,7 +139,37 @@ TEST_F(JournalFileTest, AppendedRecordsAreThereAtOnce) {
   EXPECT_EQ(readFile(path), textOf(stamped));
 }
 
-TEST_F(JournalFileTest, GoesOnAfterATornRecord) {
+// A command that was killed while it wrote its records has not happened.
+TEST_F(JournalFileTest, RecordsWrittenTogetherCountTogetherIfCutAnywhere) {
+  JournalWriter(path, 0).append(UndoEvent{});
+  const std::string before = readFile(path);
+  JournalWriter(path, 1).append(everyKind());
+  const std::string text = readFile(path);
+  for (std::size_t size = before.size(); size <= text.size(); ++size) {
+    const JournalText journal = parseJournal(std::string_view(text).substr(0, size));
+    EXPECT_EQ(journal.damaged_line, 0u) << size;
+    EXPECT_EQ(journal.torn, size > before.size() && size < text.size()) << size;
+    EXPECT_EQ(journal.events.size(), size < text.size() ? 1 : 1 + everyKind().size()) << size;
+  }
+  const std::size_t third = text.find("{\"n\":4");
+  writeFileAtomically(path, text.substr(0, third));
+  JournalWriter(path, 1).append(RedoEvent{});
+  EXPECT_EQ(parseJournal(readFile(path)).events,
+            (std::vector<JournalEvent>{UndoEvent{}, RedoEvent{}}));
+}
+
+TEST(Journal, KeepsTheCallersNameOfACommand) {
+  JournalEvent undo = UndoEvent{};
+  undo.intent = "try-1";
+  const JournalText journal = parseJournal(journalHeader("states/0-a.json", "make") +
+                                           journalLine(1, undo) + journalLine(2, UndoEvent{}));
+  EXPECT_EQ(journal.intent, "make");
+  ASSERT_EQ(journal.events.size(), 2u);
+  EXPECT_EQ(journal.events[0].intent, "try-1");
+  EXPECT_EQ(journal.events[1].intent, "");
+}
+
+TEST_F(JournalFileTest, ContinuesAfterATornRecord) {
   writeFileAtomically(path, textOf(everyKind()) + "{\"n\":7,\"stro");
   JournalWriter(path, 6).append(UndoEvent{});
   const JournalText journal = parseJournal(readFile(path));
@@ -148,7 +178,7 @@ TEST_F(JournalFileTest, GoesOnAfterATornRecord) {
   EXPECT_FALSE(std::filesystem::exists(path.string() + ".damaged"));
 }
 
-TEST_F(JournalFileTest, KeepsACopyOfDamagedRecordsThatItCutsOff) {
+TEST_F(JournalFileTest, KeepsACopyOfRemovedDamagedRecords) {
   const std::string good = textOf({UndoEvent{}}), bad = "garbage\n" + journalLine(3, UndoEvent{});
   writeFileAtomically(path, good + bad);
   JournalWriter(path, 1).append(RedoEvent{});
@@ -157,12 +187,12 @@ TEST_F(JournalFileTest, KeepsACopyOfDamagedRecordsThatItCutsOff) {
   EXPECT_EQ(readFile(path.string() + ".damaged"), bad);
 }
 
-TEST_F(JournalFileTest, ASecondWriterIsKeptOut) {
+TEST_F(JournalFileTest, RefusesASecondWriter) {
   const JournalWriter first(path, 0);
   EXPECT_TRUE(says(errorOf([&] { JournalWriter(path, 0); }), "another program is writing it"));
 }
 
-TEST_F(JournalFileTest, WhatAnotherProgramWroteSinceItWasReadIsNotCutOff) {
+TEST_F(JournalFileTest, KeepsRecordsThatAnotherProgramAppended) {
   JournalWriter(path, 0).append(UndoEvent{});
   const std::string before = readFile(path);
   EXPECT_TRUE(says(errorOf([&] { JournalWriter(path, 0); }), "another program has written"));
@@ -170,7 +200,7 @@ TEST_F(JournalFileTest, WhatAnotherProgramWroteSinceItWasReadIsNotCutOff) {
   EXPECT_EQ(readFile(path), before);
 }
 
-TEST_F(JournalFileTest, AStrokeThatCouldNotBeReadAgainIsRefused) {
+TEST_F(JournalFileTest, RefusesAnUnreadableStroke) {
   JournalWriter writer(path, 0);
   Stroke stroke = someStroke(2, 100);
   stroke.samples[1].position.x() = std::nan("");
@@ -180,7 +210,7 @@ TEST_F(JournalFileTest, AStrokeThatCouldNotBeReadAgainIsRefused) {
   EXPECT_TRUE(isWhole(parseJournal(readFile(path))));
 }
 
-TEST_F(JournalFileTest, AMissingFileIsNamed) {
+TEST_F(JournalFileTest, NamesAMissingFile) {
   EXPECT_TRUE(says(errorOf([&] { JournalWriter(root / "none.jsonl", 0); }), "none.jsonl: cannot"));
 }
 

@@ -9,7 +9,7 @@
 namespace patina {
 namespace {
 
-// What the child reports until its end; its last number, or `none`.
+// Returns the last number that the child reported until its end, or `none`.
 std::size_t lastReported(int pipe, std::string& text, std::size_t none) {
   char part[4096];
   for (ssize_t got; (got = ::read(pipe, part, sizeof part)) > 0;)
@@ -31,13 +31,13 @@ class KilledPainter : public WorkspaceTest {
       : WorkspaceTest(longForm() ? std::filesystem::path(testing::TempDir()) : fastFolder()) {}
 };
 
-TEST_F(KilledPainter, LosesNoStrokeThatWasReported) {
+TEST_F(KilledPainter, LosesNoReportedStroke) {
   const char* wanted = longForm();
   const int kills = wanted ? std::atoi(wanted) : 40;
   std::mt19937 random(static_cast<unsigned>(kills));
   std::size_t known = 0, in_progress = 0, reported_all = 0;
   for (int round = 0; round < kills; ++round) {
-    if (round % 20 == 0) { // a history that grows without end would only take time
+    if (round % 20 == 0) { // a history that grows without end only costs time
       std::filesystem::remove_all(folder);
       saveWorkspace(sceneWithObjects(0.01), folder);
       known = 0;
@@ -45,7 +45,7 @@ TEST_F(KilledPainter, LosesNoStrokeThatWasReported) {
     const auto seed = static_cast<unsigned>(random());
     const StrokesChild child = startStrokes(folder, seed, wanted != nullptr);
     std::string text;
-    // Mostly once it paints; now and then while it opens the workspace.
+    // Most kills come while it paints, a few while it opens the workspace.
     if (random() % 8 != 0) {
       char first = 0;
       ASSERT_EQ(::read(child.out, &first, 1), 1) << "the child did not start";
@@ -75,7 +75,7 @@ TEST_F(KilledPainter, LosesNoStrokeThatWasReported) {
     known = found.journal.size();
   }
   RecordProperty("strokes", static_cast<int>(reported_all));
-  // Kills that came before anything was painted would prove nothing.
+  // Kills before the first stroke would prove nothing.
   EXPECT_GT(reported_all, static_cast<std::size_t>(kills));
   std::printf("%d kills, %zu records reported and kept, %zu more were on disk\n", kills,
               reported_all, in_progress);

@@ -1,5 +1,5 @@
-// Scans of a scene in its workspace: they come back, cost nothing where there are none, and what is
-// wrong with one is said.
+// Scans of a scene in its workspace are loaded again, cost nothing if there are none, and faults in
+// one are reported.
 #include "workspace/workspace_support.h"
 
 namespace patina {
@@ -26,24 +26,24 @@ class ScanTest : public WorkspaceTest {
   Scene bare, scene;
 };
 
-TEST_F(ScanTest, ComeBackWithAllTheirFiles) {
+TEST_F(ScanTest, ReloadsScansWithAllTheirFiles) {
   saveWorkspace(scene, folder);
   EXPECT_EQ(loadWorkspace(folder).scans, scene.scans);
   EXPECT_EQ(filesIn("scans"), 6u);
-  saveWorkspace(withScan(scene, someScan("base", {})), folder); // the same: nothing new
+  saveWorkspace(withScan(scene, someScan("base", {})), folder); // unchanged: no new files
   EXPECT_EQ(filesIn("scans"), 6u);
 }
 
-TEST_F(ScanTest, CostNothingWhereThereAreNone) {
+TEST_F(ScanTest, WritesNothingWithoutScans) {
   saveWorkspace(scene, folder);
   saveWorkspace(withoutScan(withoutScan(scene, "rim"), "base"), folder);
-  EXPECT_EQ(filesIn("scans"), 0u); // nothing names them any more
+  EXPECT_EQ(filesIn("scans"), 0u); // no scan names them any more
   saveWorkspace(bare, root / "other");
   EXPECT_FALSE(fs::exists(root / "other" / "scans"));
   EXPECT_EQ(readFile(root / "other" / "workspace.json").find("scans"), std::string::npos);
 }
 
-TEST_F(ScanTest, FindTheirFramesAfterBothFoldersWereMovedTogether) {
+TEST_F(ScanTest, FindsFramesAfterBothFoldersMoved) {
   saveWorkspace(scene, folder);
   const fs::path moved = root / "moved";
   fs::create_directories(moved);
@@ -51,7 +51,7 @@ TEST_F(ScanTest, FindTheirFramesAfterBothFoldersWereMovedTogether) {
   EXPECT_EQ(loadWorkspace(moved / "scene").scans[0].folder, moved / "rim");
 }
 
-TEST_F(ScanTest, AFileThatWasChangedIsNamedAndRecoveryLeavesThatScanOut) {
+TEST_F(ScanTest, NamesAChangedFileAndRecoverySkipsItsScan) {
   saveWorkspace(scene, folder);
   fs::path file;
   for (const auto& item : fs::directory_iterator(folder / "scans"))
@@ -69,23 +69,23 @@ TEST_F(ScanTest, AFileThatWasChangedIsNamedAndRecoveryLeavesThatScanOut) {
   }));
 }
 
-TEST_F(ScanTest, WhatNoScanHasIsRefused) {
+TEST_F(ScanTest, RefusesFilesThatNoScanHas) {
   saveWorkspace(scene, folder);
   replaceIn(folder / "workspace.json", "\"rig.json\":", "\"mesh.obj\":");
   EXPECT_TRUE(says(errorOf([&] { loadWorkspace(folder); }), "'mesh.obj' is no file of a scan"));
 }
 
-TEST(Scans, OneOfANameAndItsStepsInWords) {
+TEST(Scans, HaveUniqueNamesAndStepsInWords) {
   const SceneScan first = someScan("rim", {});
   SceneScan later = first;
   later.files["path.csv"] = std::make_shared<const std::string>("path");
-  EXPECT_EQ(wordsFor(nullptr, first), "attach scan rim");
-  EXPECT_EQ(wordsFor(&first, first), "");
-  EXPECT_EQ(wordsFor(&first, later), "filter scan rim");
+  EXPECT_EQ(describeChange(nullptr, first), "attach scan rim");
+  EXPECT_EQ(describeChange(&first, first), "");
+  EXPECT_EQ(describeChange(&first, later), "filter scan rim");
   later.files["poses.tum"] = std::make_shared<const std::string>("others");
-  EXPECT_EQ(wordsFor(&first, later), "track and filter scan rim");
+  EXPECT_EQ(describeChange(&first, later), "track and filter scan rim");
   later.files.erase("rig.json");
-  EXPECT_EQ(wordsFor(&first, later), "calibrate, track and filter scan rim");
+  EXPECT_EQ(describeChange(&first, later), "calibrate, track and filter scan rim");
   Scene scene = withScan(withScan({}, first), later);
   ASSERT_EQ(scene.scans.size(), 1u);
   EXPECT_EQ(scene.scans[0], later);
@@ -108,10 +108,11 @@ SceneScan scanOf(const std::string& texts, const std::string& frames = "") {
   return scan;
 }
 
-TEST(Scans, KeepWhatFollowsFromWhatAFolderHasAndNothingElse) {
+TEST(Scans, KeepOnlyResultsOfTheFolderPresentFiles) {
   const auto kept = [](const SceneScan& known, const SceneScan& found) {
     std::string names;
-    for (const auto& [file, text] : renewed(known, found).files) names += file + ":" + *text + " ";
+    for (const auto& [file, text] : mergedScan(known, found).files)
+      names += file + ":" + *text + " ";
     return names;
   };
   const SceneScan known = scanOf(
@@ -121,7 +122,7 @@ TEST(Scans, KeepWhatFollowsFromWhatAFolderHasAndNothingElse) {
                    "rig.json:a ");
   EXPECT_EQ(kept(known, scanOf("probe.csv:a rig.json:a", "f")), whole);
   EXPECT_EQ(kept(known, scanOf("probe.csv:a", "f")), whole);
-  // Another recording: by its frames, its samples, or in that only one has any.
+  // Another recording differs by its frames, its samples, or because only one has any.
   EXPECT_EQ(kept(known, scanOf("probe.csv:a rig.json:a", "g")), "probe.csv:a rig.json:a ");
   EXPECT_EQ(kept(known, scanOf("probe.csv:b", "f")), "probe.csv:b ");
   EXPECT_EQ(kept(known, scanOf("rig.json:a", "f")), "rig.json:a ");
@@ -129,20 +130,22 @@ TEST(Scans, KeepWhatFollowsFromWhatAFolderHasAndNothingElse) {
   EXPECT_EQ(kept(scanOf("poses.tum:a path.csv:a"), scanOf("poses.tum:b")), "poses.tum:b ");
   EXPECT_EQ(kept(scanOf("path.csv:a registered.txt:a"), scanOf("path.csv:b")), "path.csv:b ");
   EXPECT_EQ(kept(scanOf("path.csv:a"), scanOf("poses.tum:a")), "poses.tum:a ");
-  // The same recording, another calibration: a camera makes no rig stale, but all that follows.
+  // The same recording with another calibration: a new camera keeps the rig, but not the later
+  // results.
   EXPECT_EQ(kept(known, scanOf("probe.csv:a rig.json:b", "f")), "probe.csv:a rig.json:b ");
   EXPECT_EQ(kept(known, scanOf("probe.csv:a camera.yml:b", "f")),
             "camera.yml:b probe.csv:a rig.json:a ");
-  // Where a path lies is of that path alone, whatever else of the scan has come since.
+  // The registration of a path belongs to that path alone, even if other files of the scan are
+  // newer.
   EXPECT_EQ(kept(scanOf("path.csv:a registered.csv:a registered.txt:a"),
                  scanOf("probe.csv:a path.csv:a heights.csv:a", "f")),
             "heights.csv:a path.csv:a probe.csv:a registered.csv:a registered.txt:a ");
   EXPECT_EQ(kept(scanOf("path.csv:a registered.csv:a registered.txt:a"),
                  scanOf("path.csv:a registered.csv:b")),
             "path.csv:a registered.csv:b ");
-  EXPECT_EQ(filesLost(known, scanOf("probe.csv:b poses.tum:b")),
+  EXPECT_EQ(invalidatedFiles(known, scanOf("probe.csv:b poses.tum:b")),
             "rig.json, path.csv, registered.csv, registered.txt");
-  EXPECT_EQ(filesLost(known, known), "");
+  EXPECT_EQ(invalidatedFiles(known, known), "");
 }
 
 } // namespace

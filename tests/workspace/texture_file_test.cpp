@@ -43,7 +43,7 @@ FourierTexture someTexture(TextureKind kind, int n = 5) {
   case TextureKind::plane:
     texture.plane = numbers((2 * n + 1) * (2 * n + 1));
   }
-  texture.low = leastHeight(texture);
+  texture.low = minHeight(texture);
   return texture;
 }
 
@@ -58,6 +58,13 @@ TEST(TextureFile, ReadsBackBitForBit) {
   }
 }
 
+TEST(TextureFile, KeepsNoMeanOfALine) {
+  const FourierTexture texture = someTexture(TextureKind::line);
+  std::string text = textureText(texture);
+  text.insert(text.find("\"a\":"), "\"mean\": 1e-6,\n  ");
+  EXPECT_EQ(parseTexture(text, "t.json"), texture) << text;
+}
+
 std::string failureOf(std::string text) {
   try {
     parseTexture(text, "t.json");
@@ -70,7 +77,7 @@ std::string failureOf(std::string text) {
   return "";
 }
 
-TEST(TextureFile, SaysWhatIsWrong) {
+TEST(TextureFile, ReportsTheCauseOfErrors) {
   const std::string whole = textureText(someTexture(TextureKind::line));
   const auto with = [&](const std::string& what, const std::string& instead) {
     std::string text = whole;
@@ -100,31 +107,31 @@ Scene texturedScene() {
   SceneObject& object = scene.objects.emplace_back();
   object.name = "ball";
   object.mesh = std::make_shared<const TriangleMesh>(icosphere(0.03, 3));
-  LaidTextures laid;
-  laid.library[2] = feltTexture(someTexture(TextureKind::line));
-  laid.library[7] = feltTexture(someTexture(TextureKind::spectrum));
+  TextureMappings laid;
+  laid.library[2] = hapticTexture(someTexture(TextureKind::line));
+  laid.library[7] = hapticTexture(someTexture(TextureKind::spectrum));
   for (std::int32_t f = 0; f < 40; f += 3)
     laid.faces.push_back({f, f % 2 ? 2 : 7, {Vec2(1. / 3, f), Vec2(0.1, -1e-300), Vec2(f, 0.7)}});
   ObjectPaint paint;
-  paint.textures = std::make_shared<const LaidTextures>(std::move(laid));
+  paint.textures = std::make_shared<const TextureMappings>(std::move(laid));
   object.paint = std::make_shared<const ObjectPaint>(std::move(paint));
   return scene;
 }
 
-TEST(TextureFile, AWorkspaceKeepsFacesAndTextures) {
+TEST(TextureFile, WorkspaceKeepsFacesAndTextures) {
   const std::filesystem::path root = test::freshFolder("textures"), folder = root / "scene";
   const Scene scene = texturedScene();
   saveWorkspace(scene, folder);
   const OpenedWorkspace opened = openWorkspace(folder);
   ASSERT_TRUE(opened.scene.objects[0].paint && opened.scene.objects[0].paint->textures);
   EXPECT_TRUE(same(*opened.scene.objects[0].paint->textures, *scene.objects[0].paint->textures));
-  // From the bytes, not from what is in memory.
-  const LaidTextures& laid = *scene.objects[0].paint->textures;
+  // This parses the bytes, not the value in memory.
+  const TextureMappings& laid = *scene.objects[0].paint->textures;
   EXPECT_TRUE(same(parseLaidTextures(laidTexturesText(laid), "l.json"), laid));
   std::filesystem::remove_all(root);
 }
 
-TEST(TextureFile, FacesThatTheMeshDoesNotHaveAreRefused) {
+TEST(TextureFile, RefusesFacesBeyondTheMesh) {
   Scene scene = texturedScene();
   scene.objects[0].mesh = std::make_shared<const TriangleMesh>(icosphere(0.03, 1));
   EXPECT_THROW(validate(scene), Error);

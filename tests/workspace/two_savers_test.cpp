@@ -28,7 +28,7 @@ int endOf(pid_t child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-TEST_F(WorkspaceTest, TwoThatMakeItAtTheSameTimeLeaveTheOneOrTheOther) {
+TEST_F(WorkspaceTest, SimultaneousSavesLeaveOneOrTheOther) {
   const Scene one = sceneWithObjects(0.05), other = sceneWithObjects(0.08);
   for (int i = 0; i < kTimes; ++i) {
     std::filesystem::remove_all(folder);
@@ -43,7 +43,7 @@ TEST_F(WorkspaceTest, TwoThatMakeItAtTheSameTimeLeaveTheOneOrTheOther) {
   }
 }
 
-TEST_F(WorkspaceTest, AHistoryWhoseScenesAreGoneIsNotWritten) {
+TEST_F(WorkspaceTest, RefusesAHistoryWithoutItsScenes) {
   const Scene scene = sceneWithObjects(0.05);
   saveWorkspace(scene, folder);
   const std::vector<StoredState> states{{0, storeState(scene, 0, folder)}};

@@ -1,4 +1,4 @@
-// A folder, and files in it, for the tests of the workspace.
+// A folder and its files, for the tests of the workspace.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ inline void replaceIn(const std::filesystem::path& path, const std::string& from
   writeFileAtomically(path, text);
 }
 
-// The line that a FileError says; "" if none is thrown.
+// Returns the line of a thrown FileError; "" if none is thrown.
 template <typename Work> std::string errorOf(const Work& work) {
   try {
     work();
@@ -37,12 +37,12 @@ inline bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// In memory where the system offers that: these tests flush thousands of times.
+// The folder is in memory if the system offers that: these tests flush thousands of times.
 inline std::filesystem::path fastFolder() {
   return ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : testing::TempDir();
 }
 
-// A folder of its own for each test, gone afterwards.
+// Makes a folder for each test and removes it afterwards.
 class WorkspaceTest : public testing::Test {
  protected:
   explicit WorkspaceTest(const std::filesystem::path& base = fastFolder())

@@ -30,15 +30,15 @@ class BrokenWorkspace : public WorkspaceTest {
   fs::path json;
 };
 
-TEST_F(WorkspaceTest, AScenesEveryValueComesBack) {
+TEST_F(WorkspaceTest, ReadsBackEveryValueOfAScene) {
   const Scene scene = sceneWithObjects(0.05);
   saveWorkspace(scene, folder);
   EXPECT_TRUE(isWorkspace(folder));
   EXPECT_TRUE(same(loadWorkspace(folder), scene));
 }
 
-// Workspaces of before do not name it.
-TEST_F(WorkspaceTest, ItNamesTheProgramThatSavedItAndOpensWithoutThatName) {
+// Old workspaces do not name it.
+TEST_F(WorkspaceTest, NamesItsProgramAndOpensWithoutThatName) {
   const Scene scene = sceneWithObjects(0.05);
   saveWorkspace(scene, folder);
   const fs::path path = folder / "workspace.json";
@@ -51,12 +51,23 @@ TEST_F(WorkspaceTest, ItNamesTheProgramThatSavedItAndOpensWithoutThatName) {
   EXPECT_TRUE(same(loadWorkspace(folder), scene));
 }
 
-TEST_F(WorkspaceTest, AnEmptySceneComesBack) {
+// A program that is killed in its first save leaves an empty folder at least.
+TEST_F(WorkspaceTest, EmptyFolderIsAnUnfinishedOneAndAForeignOneIsNot) {
+  const auto place = folder;
+  EXPECT_FALSE(isUnfinishedWorkspace(place));
+  std::filesystem::create_directory(place);
+  EXPECT_TRUE(isUnfinishedWorkspace(place));
+  std::ofstream(place / "notes.txt") << "mine";
+  EXPECT_FALSE(isUnfinishedWorkspace(place));
+  EXPECT_FALSE(isUnfinishedWorkspace(place / "notes.txt"));
+}
+
+TEST_F(WorkspaceTest, ReadsBackAnEmptyScene) {
   saveWorkspace(Scene{}, folder);
   EXPECT_TRUE(same(loadWorkspace(folder), Scene{}));
 }
 
-TEST_F(WorkspaceTest, TextureCoordinatesComeBack) {
+TEST_F(WorkspaceTest, ReadsBackTextureCoordinates) {
   TriangleMesh mesh = box(Vec3(1, 1, 1));
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     mesh.corner_uvs.push_back({Vec2(0.1 * double(t), 0), Vec2(1, 1.0 / 3), Vec2(0, 1)});
@@ -66,21 +77,21 @@ TEST_F(WorkspaceTest, TextureCoordinatesComeBack) {
   EXPECT_EQ(loadWorkspace(folder).objects[0].mesh->corner_uvs, mesh.corner_uvs);
 }
 
-TEST_F(WorkspaceTest, SavingAgainReplacesAndLeavesNoOldMesh) {
+TEST_F(WorkspaceTest, SecondSaveReplacesAndLeavesNoOldMesh) {
   saveWorkspace(sceneWithObjects(0.05), folder);
   saveWorkspace(sceneWithObjects(0.08), folder);
   EXPECT_TRUE(same(loadWorkspace(folder), sceneWithObjects(0.08)));
   EXPECT_EQ(filesIn("meshes"), 2u);
 }
 
-TEST_F(WorkspaceTest, AFileThatAPersonPutThereStays) {
+TEST_F(WorkspaceTest, KeepsAUsersFile) {
   saveWorkspace(sceneWithObjects(0.05), folder);
   writeFileAtomically(folder / "meshes" / "original.ply", "mine");
   saveWorkspace(sceneWithObjects(0.08), folder);
   EXPECT_EQ(readFile(folder / "meshes" / "original.ply"), "mine");
 }
 
-TEST_F(WorkspaceTest, SavingWritesADamagedFileAgain) {
+TEST_F(WorkspaceTest, SaveRewritesADamagedFile) {
   const Scene scene = paintedScene(0.05, 1, With::material);
   saveWorkspace(scene, folder);
   for (const char* part : {"meshes", "paint", "states"})
@@ -93,7 +104,7 @@ TEST_F(WorkspaceTest, SavingWritesADamagedFileAgain) {
   EXPECT_TRUE(same(openWorkspace(folder).scene, scene));
 }
 
-TEST_F(WorkspaceTest, NothingIsWrittenThroughALink) {
+TEST_F(WorkspaceTest, WritesNothingThroughALink) {
   for (const char* part : {"meshes", "paint", "states"}) {
     fs::remove_all(folder);
     fs::create_directories(folder);
@@ -112,7 +123,7 @@ TEST_F(WorkspaceTest, MovesWithItsFolder) {
   EXPECT_TRUE(same(loadWorkspace(root / "elsewhere"), sceneWithObjects(0.05)));
 }
 
-TEST_F(WorkspaceTest, AnInvalidSceneIsNotSaved) {
+TEST_F(WorkspaceTest, RefusesToSaveAnInvalidScene) {
   saveWorkspace(sceneWithObjects(0.05), folder);
   Scene broken = sceneWithObjects(0.08);
   broken.haptics.stiffness = -1;
@@ -120,7 +131,7 @@ TEST_F(WorkspaceTest, AnInvalidSceneIsNotSaved) {
   EXPECT_TRUE(same(loadWorkspace(folder), sceneWithObjects(0.05)));
 }
 
-TEST_F(WorkspaceTest, IsNotAnyFolderOrFile) {
+TEST_F(WorkspaceTest, RefusesOtherFoldersAndFiles) {
   EXPECT_FALSE(isWorkspace(root));
   EXPECT_FALSE(isWorkspace(root / "missing"));
   writeFileAtomically(root / "file", "x");
@@ -129,7 +140,7 @@ TEST_F(WorkspaceTest, IsNotAnyFolderOrFile) {
   EXPECT_THROW(loadWorkspace(root), FileError);
 }
 
-TEST_F(BrokenWorkspace, AChangedMeshIsNamed) {
+TEST_F(BrokenWorkspace, NamesAChangedMesh) {
   const fs::path mesh = firstMesh();
   std::string bytes = readFile(mesh);
   bytes.back() = static_cast<char>(bytes.back() ^ 1);
@@ -138,13 +149,13 @@ TEST_F(BrokenWorkspace, AChangedMeshIsNamed) {
             std::string::npos);
 }
 
-TEST_F(BrokenWorkspace, AMissingMeshIsNamed) {
+TEST_F(BrokenWorkspace, NamesAMissingMesh) {
   const fs::path mesh = firstMesh();
   fs::remove(mesh);
   EXPECT_NE(errorOfLoading().find(mesh.filename().string()), std::string::npos);
 }
 
-TEST_F(BrokenWorkspace, AnUnknownVersionIsRefusedAndNotSavedOver) {
+TEST_F(BrokenWorkspace, RefusesAnUnknownVersionWithoutOverwriting) {
   replaceIn(json, "\"version\": 3", "\"version\": 5");
   const std::string before = readFile(json);
   EXPECT_NE(errorOfLoading().find("version 5 is unknown"), std::string::npos);
@@ -152,7 +163,7 @@ TEST_F(BrokenWorkspace, AnUnknownVersionIsRefusedAndNotSavedOver) {
   EXPECT_EQ(readFile(json), before);
 }
 
-TEST_F(BrokenWorkspace, PathsThatLeaveTheFolderAreRefused) {
+TEST_F(BrokenWorkspace, RefusesPathsOutsideTheFolder) {
   const std::string good = readFile(json);
   writeFileAtomically(root / "outside.ply", readFile(firstMesh()));
   const std::string mesh = "meshes/" + firstMesh().filename().string();
@@ -164,7 +175,7 @@ TEST_F(BrokenWorkspace, PathsThatLeaveTheFolderAreRefused) {
   }
 }
 
-TEST_F(BrokenWorkspace, ALinkThatLeavesTheFolderIsRefused) {
+TEST_F(BrokenWorkspace, RefusesALinkOutOfTheFolder) {
   const fs::path mesh = firstMesh();
   fs::rename(mesh, root / "outside.ply");
   fs::create_symlink(root / "outside.ply", mesh);
@@ -173,7 +184,7 @@ TEST_F(BrokenWorkspace, ALinkThatLeavesTheFolderIsRefused) {
 
 TEST_F(BrokenWorkspace, EveryTruncationIsAnError) {
   const std::string text = readFile(json);
-  // The last newline and brace apart, no prefix is whole.
+  // No prefix without the last newline and brace is a whole file.
   for (std::size_t size = 0; size + 2 < text.size(); size += 7) {
     std::ofstream(json) << text.substr(0, size);
     EXPECT_NE(errorOfLoading(), "") << size;
@@ -197,10 +208,25 @@ TEST_F(BrokenWorkspace, BadValuesAreNamed) {
   }
 }
 
-TEST_F(BrokenWorkspace, IsRepairedBySavingAgain) {
+TEST_F(BrokenWorkspace, IsRepairedByASave) {
   writeFileAtomically(json, "{");
   saveWorkspace(sceneWithObjects(0.08), folder);
   EXPECT_TRUE(same(loadWorkspace(folder), sceneWithObjects(0.08)));
+}
+
+TEST_F(WorkspaceTest, NamesTheLineOfANulInAName) {
+  saveWorkspace(sceneWithObjects(0.05), folder);
+  const std::filesystem::path json = folder / "workspace.json";
+  const std::string good = readFile(json);
+  const std::size_t at = good.find("\"name\": \"") + 9;
+  for (const char* nul : {"\\u0000", "a\\\\\\u0000b"}) {
+    writeFileAtomically(json, good.substr(0, at) + nul + good.substr(at));
+    const std::string line = std::to_string(std::count(good.begin(), good.begin() + at, '\n') + 1);
+    EXPECT_TRUE(says(errorOf([&] { openWorkspace(folder); }), "workspace.json:" + line)) << nul;
+    EXPECT_TRUE(says(errorOf([&] { openWorkspace(folder); }), "NUL")) << nul;
+  }
+  writeFileAtomically(json, good.substr(0, at) + "\\\\u0000" + good.substr(at));
+  EXPECT_FALSE(says(errorOf([&] { openWorkspace(folder); }), "NUL"));
 }
 
 } // namespace

@@ -1,7 +1,7 @@
-// Every command, one a source file of the same name (redo beside undo), and their only list.
+// All commands, each in a source file of its own name (redo in undo's).
 #pragma once
 
-#include "app/cli/commands/command.h"
+#include "app/cli/framework/command.h"
 
 namespace patina::cli {
 
@@ -18,8 +18,8 @@ Command embossCommand();
 Command renderCommand();
 Command exportCommand();
 Command simulateDeviceCommand();
-#ifdef PATINA_HAS_ACQUISITION
 Command simulateScanCommand();
+Command rigCommand();
 Command recordCommand();
 Command calibrateCommand();
 Command trackCommand();
@@ -29,7 +29,6 @@ Command fitTextureCommand();
 Command mapTextureCommand();
 Command scanCommand();
 Command demoCommand();
-#endif
 Command studyCommand();
 Command modelCommand();
 Command latencyTestCommand();
@@ -39,19 +38,16 @@ Command manCommand();
 Command helpCommand();
 Command completionCommand();
 
-// In the order in which --help lists them.
+// All commands, ordered as --help lists them.
 inline std::vector<Command> allCommands() {
-  return {infoCommand(),           sceneCommand(),    fieldCommand(),      sampleCommand(),
-          feelCommand(),           simulateCommand(), paintCommand(),      undoCommand(),
-          redoCommand(),           embossCommand(),   renderCommand(),     exportCommand(),
-#ifdef PATINA_HAS_ACQUISITION
-          simulateScanCommand(),   recordCommand(),   calibrateCommand(),  trackCommand(),
-          filterCommand(),         registerCommand(), fitTextureCommand(), mapTextureCommand(),
-          scanCommand(),           demoCommand(),
-#endif
-          simulateDeviceCommand(), studyCommand(),    modelCommand(),      devicesCommand(),
-          latencyTestCommand(),    guiCommand(),      helpCommand(),       manCommand(),
-          completionCommand()};
+  return {infoCommand(),       sceneCommand(),        fieldCommand(),    sampleCommand(),
+          feelCommand(),       simulateCommand(),     paintCommand(),    undoCommand(),
+          redoCommand(),       embossCommand(),       renderCommand(),   exportCommand(),
+          rigCommand(),        simulateScanCommand(), recordCommand(),   calibrateCommand(),
+          trackCommand(),      filterCommand(),       registerCommand(), fitTextureCommand(),
+          mapTextureCommand(), scanCommand(),         demoCommand(),     simulateDeviceCommand(),
+          studyCommand(),      modelCommand(),        devicesCommand(),  latencyTestCommand(),
+          guiCommand(),        helpCommand(),         manCommand(),      completionCommand()};
 }
 
 } // namespace patina::cli

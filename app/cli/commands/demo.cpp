@@ -78,10 +78,10 @@ int runDemo(const DemoOptions& options, Console& console) {
   for (const DemoFigure& figure : demoFigures(demo))
     report.tell(figure.what + (figure.of.empty() ? "" : ", " + figure.of),
                 figureText(figure.value, figure.unit) + ", at most " +
-                    figureText(figure.most, figure.unit) + (figure.holds() ? "" : ": MISSED"));
+                    figureText(figure.limit, figure.unit) + (figure.passes() ? "" : ": MISSED"));
   report.set("holds", found.at("holds")).set("pictures", jsonOf(drawn), joined(drawn));
   report.set("folder", options.output.string(),
-             options.output.string() + ", where report.md tells and shows each step");
+             options.output.string() + "; report.md describes each step");
   return console.report(report, found.at("holds").asBool() ? kDone : kNotSolved);
 }
 
@@ -105,10 +105,7 @@ Command demoCommand() {
       .arguments = {{"-o,--output", "FOLDER", "", "patina-demo", "Made if it is missing.",
                      outInto(options->output), Times::at_most_once, true},
                     {"--seed", "N", "", "1", "Another hand, another noise.",
-                     inRange(
-                         0, 1e6,
-                         [options](double n) { options->seed = static_cast<std::uint32_t>(n); },
-                         NumberKind::whole)}},
+                     numberInto(0, 1e6, options->seed, NumberKind::whole)}},
       .run = [options](Console& console) { return runDemo(*options, console); }};
 }
 

@@ -1,17 +1,14 @@
 #include <filesystem>
 
+#include "acquisition/sources/usb_probe.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
-#include "core/file.h"
 #include "core/numbers.h"
-#include "haptics/devices/device_catalog.h"
-#include "haptics/devices/plugin/plugin_library.h"
+#include "haptics/catalog/device_catalog.h"
+#include "haptics/plugin/plugin_library.h"
 #include "haptics/servo/latency.h"
 #include "usb/usb_check.h"
-#ifdef PATINA_HAS_ACQUISITION
-#include "acquisition/sources/usb_probe.h"
-#endif
 
 namespace patina::cli {
 
@@ -20,7 +17,7 @@ namespace {
 struct DevicesOptions {
   bool diagnose = false;
   bool install = false;
-  std::filesystem::path rules; // the folder to install them in
+  std::filesystem::path rules; // target folder
 };
 
 const Keys kChannelKeys = {{"name", "", ""},
@@ -97,8 +94,7 @@ std::string firmwareText(std::uint16_t release) {
          std::to_string(release >> 4 & 15) + std::to_string(release & 15);
 }
 
-#ifdef PATINA_HAS_ACQUISITION
-// What a probe says of itself; what cannot be asked is told already.
+// Adds the identification of a probe; a device without access is reported elsewhere.
 void addDescription(const UsbDevice& device, Json& entry, std::string& text) {
   try {
     const ProbeDescription probe = describeProbe(*openUsb(device), device.name);
@@ -119,7 +115,6 @@ void addDescription(const UsbDevice& device, Json& entry, std::string& text) {
     text += std::string("; ") + error.what();
   }
 }
-#endif
 
 void addRoundTrips(const UsbCheck& check, Json& entry, std::string& text) {
   if (check.round_trips.empty()) return;
@@ -152,7 +147,7 @@ std::string driverText(const UsbDevice& device, Json& entry) {
   return "recognised; this version renders no force on it: a plug-in of its maker's library may";
 }
 
-// Haptic devices always, everything else on the bus only when asked.
+// Lists haptic devices, and all others on the bus if `diagnose` is set.
 void addUsb(bool diagnose, Json& list, Report& report) {
   std::vector<UsbDevice> devices;
   try {
@@ -168,7 +163,7 @@ void addUsb(bool diagnose, Json& list, Report& report) {
     if (!haptic && !diagnose) continue;
     const UsbCheck check = diagnose ? checkUsb(device) : UsbCheck{device, device.refusal};
     Json entry = Json::object();
-    const std::string id = usbNumbers(device.vendor, device.product);
+    const std::string id = vendorProductText(device.vendor, device.product);
     entry.set("name", device.name).set("kind", "usb").set("id", id);
     entry.set("haptic", device.haptic).set("openable", device.openable);
     entry.set("state", stateText(check)).set("serial", device.serial);
@@ -178,15 +173,13 @@ void addUsb(bool diagnose, Json& list, Report& report) {
     entry.set("advice", advice);
     std::string text = device.name;
     if (haptic) text += " (" + device.haptic + "; " + driverText(device, entry) + ")";
-    const bool says_all = !advice.empty() && check.holder.empty(); // the state, too
+    const bool says_all = !advice.empty() && check.holder.empty(); // also show the state
     text += "; " + (says_all ? advice : stateText(check) + (advice.empty() ? "" : ": " + advice));
     if (diagnose) {
       text += "; release " + firmwareText(device.release);
       if (device.megabits > 0) text += "; " + rounded(device.megabits) + " Mbit/s";
       addRoundTrips(check, entry, text);
-#ifdef PATINA_HAS_ACQUISITION
       if (device.haptic == kProbeName && !check.refusal) addDescription(device, entry, text);
-#endif
     }
     list.push(entry);
     report.tell(id, text);
@@ -209,29 +202,19 @@ void addSerial(Json& list, Report& report) {
   }
 }
 
-void installRules(const std::filesystem::path& folder, Report& report) {
-  const std::filesystem::path file = folder / kUdevFile;
-  const auto heading = [](const std::string& text) { return text.substr(0, text.find('\n')); };
-  if (pathExists(file) && std::filesystem::is_regular_file(file) &&
-      std::filesystem::file_size(file) > 0 && heading(readFile(file)) != heading(udevRules()))
-    throw FileError(file.string(), 0, "holds other rules than Patina's; remove it first");
-  try {
-    writeFileAtomically(file, udevRules());
-  } catch (const FileError& error) {
-    throw Error(std::string(error.what()) +
-                "; run this as root (sudo), or name a folder of your own");
-  }
-  report.set("rules", file.string());
-  report.tell("next", "run 'udevadm control --reload' as root and plug the device in again");
-}
-
 int runDevices(const DevicesOptions& options, Console& console) {
   Json list = Json::array();
   Report report(kDevicesKeys);
+  if (options.install && options.diagnose)
+    throw Error("devices: --install-udev and --diagnose are two calls");
   if (!options.install && !options.rules.empty())
     throw Error("devices: '" + options.rules.string() + "' is a folder for --install-udev alone");
-  if (options.install)
-    installRules(options.rules.empty() ? "/etc/udev/rules.d" : options.rules, report);
+  if (options.install) { // root loads neither a plug-in nor a device's library
+    report.set("rules",
+               installUdevRules(options.rules.empty() ? kUdevFolder : options.rules).string());
+    report.tell("next", "run 'udevadm control --reload' as root and plug the device in again");
+    return console.report(report);
+  }
   addBuiltIn(list, report);
   addPlugins(list, report);
   addUsb(options.diagnose, list, report);
@@ -252,28 +235,27 @@ int runDevices(const DevicesOptions& options, Console& console) {
 
 Command devicesCommand() {
   auto options = std::make_shared<DevicesOptions>();
-  return {
-      .name = "devices",
-      .summary = "what is attached, what is wrong, what to do",
-      .description =
-          "Lists the built-in devices, plug-ins, and the haptic devices and probes on USB and "
-          "serial lines, each with what keeps it from being used and what to do. --diagnose lists "
-          "everything on the bus, with release and cable, asks each device for its status 200 "
-          "times to say how long the way there and back takes, asks a probe what it is, and tries "
-          "the servo's scheduling policy. Devices that may not be opened need a rule of udev: "
-          "--install-udev writes those of all devices that Patina knows.",
-      .examples = {"patina devices --diagnose", "sudo patina devices --install-udev"},
-      .keys = kDevicesKeys,
-      .arguments = {{"--diagnose", "", "", "", "Say what is wrong and what to do.",
-                     into(options->diagnose)},
-                    {"--install-udev", "", "", "",
-                     "Write 70-patina.rules, so that whoever sits at this machine may open them.",
-                     into(options->install)},
-                    input(
-                        "DIR", "Where --install-udev writes. [/etc/udev/rules.d]",
-                        [options](const std::string& folder) { options->rules = folder; },
-                        Times::at_most_once)},
-      .run = [options](Console& console) { return runDevices(*options, console); }};
+  return {.name = "devices",
+          .summary = "what is attached, what is wrong, what to do",
+          .description =
+              "Lists the built-in devices, plug-ins, and the haptic devices and probes on USB and "
+              "serial lines, each with its faults and their remedies. --diagnose lists everything "
+              "on the bus, with release and cable, requests each device's status 200 times to "
+              "measure the round trip, identifies probes, and tries the servo's scheduling policy. "
+              "Devices without access rights need a udev rule: --install-udev writes the rules of "
+              "all supported devices and does nothing else.",
+          .examples = {"patina devices --diagnose", "sudo patina devices --install-udev"},
+          .keys = kDevicesKeys,
+          .arguments = {{"--diagnose", "", "", "", "Say what is wrong and what to do.",
+                         into(options->diagnose)},
+                        {"--install-udev", "", "", "",
+                         "Write 70-patina.rules, so that the user of this machine may open them.",
+                         into(options->install)},
+                        input(
+                            "DIR", "Where --install-udev writes. [/etc/udev/rules.d]",
+                            [options](const std::string& folder) { options->rules = folder; },
+                            Times::at_most_once)},
+          .run = [options](Console& console) { return runDevices(*options, console); }};
 }
 
 } // namespace patina::cli

@@ -1,17 +1,17 @@
-#include "authoring/images/emboss.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/scene_options.h"
 #include "app/cli/output/mesh_output.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
-#include "session/build/relief_deviation.h"
+#include "geometry/io/mesh_in_unit.h"
+#include "session/open/mesh_export.h"
 
 namespace patina::cli {
 
 namespace {
 
-constexpr double kToldShare = 0.05; // of the relief's height that the grid may lose unsaid
+constexpr double kToldShare = 0.05; // share of the relief's height; a larger loss is reported
 
 struct EmbossOptions {
   std::filesystem::path input, output;
@@ -33,24 +33,21 @@ int runEmboss(const EmbossOptions& options, Console& console) {
   Scene scene = openWith(options.input, options.scene, console);
   if (highestRelief(scene) == 0)
     console.warn(options.input.string() + ": there is no relief: the mesh is the field's surface");
-  scene.relief.mode = ReliefMode::pulled; // baked below, into a field of its own
-  const auto compiled = compileFor(std::move(scene), console, FaceLayer::kept);
-  const std::vector<ReliefSource> sources = reliefSources(*compiled);
-  const TriangleMesh mesh =
-      embossed(compiled->built.field, *compiled->mesh, sources, console.progress());
-  const MeshReport counts = inspect(mesh);
-  const ReliefDeviation deviation = reliefDeviation(*compiled, mesh);
+  scene.relief.mode = ReliefMode::pulled; // baked later, into a separate field
+  const auto compiled = compileFor(std::move(scene), console, FaceLayer::always);
+  const EmbossedMesh made = embossedMesh(*compiled, console.progress());
+  const ReliefDeviation& deviation = made.deviation;
+  const MeshReport counts = inspect(made.mesh);
   console.progress().throwIfCancelled();
-  writeMeshIn(options.output, mesh, options.unit);
+  writeMeshIn(options.output, made.mesh, options.unit);
 
-  const double voxel = compiled->built.field->grid.voxel;
   if (deviation.rms > kToldShare * deviation.highest)
     console.warn("the mesh misses the painted relief by " + formatLength(deviation.rms) +
                  " rms: a smaller --voxel keeps more of it");
   Report report(kEmbossKeys);
   report.set("triangles", counts.triangles).set("vertices", counts.vertices);
   report.set("watertight", counts.watertight);
-  report.set("unit", std::string(name(options.unit))).set("voxel", voxel);
+  report.set("unit", std::string(name(options.unit))).set("voxel", made.voxel);
   report.set("highest", deviation.highest);
   report.set("deviation_rms", deviation.rms).set("deviation_max", deviation.most);
   return console.report(report);
@@ -64,11 +61,10 @@ Command embossCommand() {
       .name = "emboss",
       .summary = "relief made into a new mesh",
       .description =
-          "The field is built as fine as asked for, the painted relief baked into it, and its "
-          "surface written as a mesh: several objects become one. relief.height below 0 engraves. "
-          "The grid loses height: of a pattern as long as 8 voxels 8 %, as 4 voxels 29 %; "
-          "deviation is measured, from the painted texels, displaced along the normals, to the new "
-          "mesh.",
+          "Builds the field with the given voxel, bakes the painted relief into it, and writes its "
+          "surface as a mesh: several objects become one. relief.height below 0 engraves. The grid "
+          "loses height: of a pattern as long as 8 voxels 8 %, as 4 voxels 29 %; deviation is "
+          "measured, from the painted texels, displaced along the normals, to the new mesh.",
       .examples = {"patina emboss cup -o cup.ply", "patina emboss cup -o cup.stl --voxel 0.2mm"},
       .keys = kEmbossKeys,
       .arguments = {input("WORKSPACE", "Painted workspace.", into(options->input)),

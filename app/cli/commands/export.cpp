@@ -3,7 +3,7 @@
 #include "app/cli/input/tip_path.h"
 #include "app/cli/output/reports.h"
 #include "app/cli/output/stability_report.h"
-#include "session/store/scene_export.h"
+#include "session/open/scene_export.h"
 
 namespace patina::cli {
 
@@ -28,7 +28,7 @@ int runExport(const ExportOptions& options, Console& console) {
     while (const auto tip = reader.next()) path.push_back(*tip);
   }
   const auto compiled =
-      compileFor(openWith(options.input, options.scene, console), console, FaceLayer::kept);
+      compileFor(openWith(options.input, options.scene, console), console, FaceLayer::always);
   std::optional<SurfaceStability> stability;
   if (options.stability) stability = requiredStability(*compiled, console.progress());
   console.progress().throwIfCancelled();
@@ -64,8 +64,8 @@ Command exportCommand() {
           "together, and with --path also path.vtp and forces.csv (as patina feel). Painted images "
           "go beside them, as .png (16 bits) and .exr (floats); paint-NAME.vtp has an object's "
           "mesh with all that was painted on it, material-NAME.vti its painted material.\n"
-          "With --stability the vertices of surface.vtp carry K*(x)/K, below 1 where the loop "
-          "would buzz, and the least stiffness of any direction, below 0 where the tip slips off.",
+          "With --stability the vertices of surface.vtp carry K*(x)/K, below 1 where the loop is "
+          "unstable, and the min stiffness over directions, below 0 where the tip slips off.",
       .examples = {"patina export workspace -o paraview",
                    "patina export bunny.ply -o paraview --path tip.csv"},
       .keys = kExportKeys,

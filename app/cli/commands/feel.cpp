@@ -10,7 +10,7 @@
 #include "core/csv.h"
 #include "core/numbers.h"
 #include "core/percentiles.h"
-#include "session/build/stage_cost.h"
+#include "session/open/stage_cost.h"
 #include "visualization/export/export_files.h"
 
 namespace patina::cli {
@@ -46,7 +46,7 @@ const Keys kFeelKeys = {
 int runFeel(const FeelOptions& options, Console& console) {
   requireWritable(options.output, {options.input, options.path}, FileKind::table);
   TipPathReader path(options.path);
-  // A path that is wrong from the start is refused before the field is built.
+  // An invalid path is rejected before the field is built.
   std::optional<TimedTip> first = path.next();
   console.warn(path.table().leftOut());
   const auto compiled = compileFor(openWith(options.input, options.scene, console), console);
@@ -109,10 +109,10 @@ Command feelCommand() {
       .name = "feel",
       .summary = "replay a tip path through the servo's own code",
       .description =
-          "One row a tick goes out: force on the hand, contact, depth, virtual contact point, "
-          "normal and the time of the step. The path has the columns t [s],x [m],y [m],z [m], its "
-          "times increasing; the time between two rows is the tick. A pause longer than 20 ms and "
-          "than four ticks lifts the tip: it is felt anew where it comes down.",
+          "The output has one row per tick: force on the hand, contact, depth, virtual contact "
+          "point, normal and the time of the step. The path has the columns t [s],x [m],y [m],z "
+          "[m], its times increasing; the time between two rows is the tick. A pause longer than "
+          "20 ms and than four ticks lifts the tip: contact starts again where it comes down.",
       .examples = {"patina feel bunny.ply --path tip.csv -o forces.csv --stiffness 800",
                    "patina feel workspace --path tip.csv -o forces.csv --tip-radius 1mm --json"},
       .keys = kFeelKeys,

@@ -2,8 +2,8 @@
 #include "app/cli/input/scene_options.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
-#include "session/build/compile_warnings.h"
-#include "visualization/export/field_io.h"
+#include "session/compile/compile_warnings.h"
+#include "visualization/files/field_io.h"
 
 namespace patina::cli {
 
@@ -21,7 +21,7 @@ int runField(const FieldOptions& options, Console& console) {
   const Scene scene = openWith(options.input, options.scene, console);
   if (scene.objects.empty())
     throw Error(options.input.string() + ": needs an object to build a field");
-  // One object needs no more than its field, unless relief is in it.
+  // One object needs only its field, unless relief is baked.
   const bool baked = scene.relief.mode == ReliefMode::baked && highestRelief(scene) > 0;
   BuiltField built;
   if (scene.objects.size() == 1 && !baked) {

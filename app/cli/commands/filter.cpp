@@ -4,13 +4,12 @@
 #include <numbers>
 
 #include "acquisition/files/registered_file.h"
-#include "acquisition/files/scan_files.h"
-#include "acquisition/filtering/filtered_scan.h"
+#include "acquisition/files/scan_tables.h"
+#include "acquisition/profile/roughness.h"
 #include "acquisition/simulation/path_error.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/framework/report.h"
 #include "app/cli/input/mesh_input.h"
-#include "app/cli/output/height_report.h"
-#include "app/cli/output/path_report.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
@@ -22,13 +21,88 @@
 #include "scan/scan_texture.h"
 
 namespace patina::cli {
-
 namespace {
+
+// Path part of `patina filter`'s report.
+
+Json gapsJson(const FilteredScan& scan) {
+  Json list = Json::array();
+  for (const auto& [stream, gaps] :
+       {std::pair("poses", &scan.without_pose), {"probe", &scan.without_sample}})
+    for (const Gap& gap : *gaps)
+      list.push(Json::object().set("stream", stream).set("from", gap.from).set("to", gap.to));
+  return list;
+}
+
+void reportSigma(const std::vector<PathSample>& path, Report& report) {
+  std::vector<double> sigmas;
+  for (const PathSample& sample : path) sigmas.push_back(sample.sigma);
+  const double median = percentiles(sigmas).p50, most = percentiles(sigmas).max;
+  report.set("sigma", Json::object().set("median", median).set("max", most),
+             formatLength(median) + " (median), " + formatLength(most) + " (max)");
+}
+
+// Sets clock_offset, clock_skew and clock_deviation.
+void reportClock(const ProbeClock& found, Report& report) {
+  const ProbeClock clock = found.is_significant ? found : ProbeClock();
+  report.set("clock_offset", clock.offset,
+             found.is_significant
+                 ? "the probe's is " + rounded(1e3 * clock.offset) + " ms ahead, +- " +
+                       rounded(1e3 * clock.offset_deviation) + ", and " +
+                       rounded(1e6 * clock.skew) + " us a second faster, +- " +
+                       rounded(1e6 * clock.skew_deviation) + "; corrected"
+                 : "as the camera's, within " + rounded(1e3 * found.offset_deviation) + " ms");
+  report.set("clock_skew", clock.skew);
+  report.set(
+      "clock_deviation",
+      Json::object().set("offset", found.offset_deviation).set("skew", found.skew_deviation));
+}
+
+// Heights part of `patina filter`'s report.
+
+// Sets normal, stretches, height_sigma, and roughness and stiffness if known.
+void reportHeights(const ScanHeights& scan, Report& report) {
+  report.set("normal", vectorJson(scan.plane.normal));
+  report.set("stretches", scan.heights.back().stretch + 1);
+  std::vector<double> sigmas;
+  for (const ScanHeight& height : scan.heights) sigmas.push_back(height.point.sigma);
+  report.set("height_sigma", percentiles(sigmas).p50);
+  if (const auto found = roughnessOf(scan.heights))
+    report.set("roughness",
+               Json::object()
+                   .set("rq", found->rq)
+                   .set("ra", found->ra)
+                   .set("rq_deviation", found->rq_deviation)
+                   .set("ra_deviation", found->ra_deviation)
+                   .set("cutoff", kRoughnessCutoff)
+                   .set("lengths", found->lengths),
+               "Rq " + formatLength(found->rq) + " +- " + formatLength(found->rq_deviation) +
+                   ", Ra " + formatLength(found->ra) + " +- " + formatLength(found->ra_deviation) +
+                   ", waves up to " + formatLength(kRoughnessCutoff));
+  if (const auto& found = scan.compliance) {
+    const std::string presses =
+        ", from " + formatCount(found->loadings) + (found->loadings == 1 ? " press" : " presses");
+    if (found->isSignificant())
+      report.set("stiffness",
+                 Json::object()
+                     .set("value", found->stiffness)
+                     .set("deviation", found->stiffness_deviation)
+                     .set("presses", found->loadings),
+                 rounded(found->stiffness) + " N/m, deviation " +
+                     rounded(found->stiffness_deviation) + " N/m" + presses);
+    else {
+      const double least = 1 / (found->compliance + 2 * found->compliance_deviation);
+      report.set("stiffness", Json::object().set("least", least).set("presses", found->loadings),
+                 "more than " + rounded(least) + " N/m" + presses +
+                     ": it may be rigid, and heights are those of a rigid surface");
+    }
+  }
+}
 
 struct FilterOptions {
   std::filesystem::path input, probe, rig, truth, output, heights, over, registration;
   MeshUnit unit = MeshUnit::mm;
-  double tip_radius = 0;
+  std::optional<double> tip_radius;
   std::optional<Vec3> normal;
   std::optional<PathModel> model;
   bool forward = false, lifted = false;
@@ -41,7 +115,7 @@ const Keys kFilterKeys = {
     {"model", "", "model"},
     {"poses", "", "poses", "", Shown::never},
     {"rejected", "", "rejected", "poses", Shown::if_any},
-    {"restarts", "", "begun anew", "after jumps of the poses, or 1.5 s without any", Shown::if_any},
+    {"restarts", "", "restarts", "after jumps of the poses, or 1.5 s without any", Shown::if_any},
     {"nis_mean", "", "NIS",
      "squared innovations of the poses over their variance, about 1: the motion's noise is fitted "
      "to them, which hides sigmas that are too small"},
@@ -94,7 +168,7 @@ const Keys kFilterKeys = {
      Shown::if_any,
      {{"value", "N/m", ""},
       {"deviation", "N/m", ""},
-      {"least", "N/m", "", "in place of both, where presses do not tell it from rigid"},
+      {"least", "N/m", "", "in place of both, if presses do not distinguish it from rigid"},
       {"presses", "", ""}}},
     {"seconds", "s", "filtered in"}};
 
@@ -117,7 +191,7 @@ std::string nameOf(PathModel model) {
                                             : "velocity";
 }
 
-// In a scan folder each file has its name; one that was named takes its place.
+// Finds the files of a scan folder; options that name a file override them.
 void findFiles(FilterOptions& options) {
   const bool folder = std::filesystem::is_directory(options.input);
   const std::filesystem::path place = folder ? options.input : options.input.parent_path();
@@ -134,6 +208,7 @@ void findFiles(FilterOptions& options) {
 struct Inputs {
   OnFile<CameraPose> poses;
   OnFile<ProbeSample> samples;
+  std::vector<RateSample> rates; // gyroscope; empty without one
   Rig rig;
   std::vector<PathSample> truth;
 };
@@ -142,7 +217,7 @@ Inputs read(const FilterOptions& options, Console& console) {
   Inputs in;
   std::vector<std::string> warnings;
   in.poses = readPoses(options.input, options.sigmas, &warnings);
-  if (!options.probe.empty()) in.samples = readProbeStream(options.probe, &warnings);
+  if (!options.probe.empty()) in.samples = readProbeStream(options.probe, &warnings, &in.rates);
   if (!options.truth.empty()) in.truth = readPath(options.truth, &warnings);
   for (const std::string& line : warnings) console.warn(line);
   in.rig.probe.tip = Vec3::Zero();
@@ -161,14 +236,15 @@ PathModel chosenModel(const FilterOptions& options, const Inputs& in) {
   const PathModel able = options.forward ? PathModel::acceleration : filterOf(in.rig, heard).model;
   const PathModel model = options.model.value_or(able);
   if (model != PathModel::fused) return model;
-  if (options.forward) throw Error("--forward: the fused path is smoothed; choose another --model");
+  if (options.forward)
+    throw Error("--no-smoother: the fused path is smoothed; choose another --model");
   if (!heard) throw Error("--model: fused needs the probe's stream, --probe");
   if (!in.rig.accelerometers)
     throw Error("--model: fused needs 'accelerometers' and 'gravity' in the rig, --rig");
   return model;
 }
 
-// A gap ends at a value of the file, by the scan's time, which a clock may have made of the file's.
+// The end of a gap is a sample of the file; its time in the scan may differ by the clock's fit.
 template <class Value>
 std::string placeOf(const std::filesystem::path& path, const OnFile<Value>& file,
                     const ProbeClock* clock, const Gap& gap) {
@@ -192,7 +268,7 @@ void warnOf(const std::vector<Gap>& gaps, const std::filesystem::path& path,
                (gaps.size() > 1 ? ", the longest of " + formatCount(gaps.size()) + " gaps" : ""));
 }
 
-// Heights over a mesh that the scan was registered to.
+// Heights over a mesh to which the scan is registered.
 struct Over {
   Over(TriangleMesh mesh, double tip_radius, const std::filesystem::path& registration)
       : target(std::move(mesh), tip_radius, true), found(readRegistrationReport(registration)) {}
@@ -200,30 +276,31 @@ struct Over {
   RegistrationReport found;
 };
 
-std::optional<Over> readOver(const FilterOptions& options, Console& console) {
+std::optional<Over> readOver(const FilterOptions& options, const Rig& rig, Console& console) {
   if (options.over.empty() != options.registration.empty())
-    throw Error("--over and --registration go together: the mesh, and where the scan lies on it");
+    throw Error(
+        "--reference-mesh and --registration go together: the mesh, and where the scan lies on it");
   if (options.over.empty()) return std::nullopt;
-  if (options.heights.empty()) throw Error("--over: is of heights; name a file with --heights");
+  if (options.heights.empty())
+    throw Error("--reference-mesh: is of heights; name a file with --heights");
   if (options.normal) throw Error("--normal: over a mesh its own normals count");
   ScaledMesh scaled = readScaledMesh(options.over, options.unit, console);
   return std::optional<Over>(std::in_place, cleaned(std::move(scaled.mesh)).mesh,
-                             options.tip_radius, options.registration);
+                             options.tip_radius.value_or(rig.tip_radius), options.registration);
 }
 
 void requireTouch(const FilteredScan& scan, const FilterOptions& options) {
   if (scan.path.empty())
     throw FileError(options.probe.string(), 0,
                     "the probe never touches, its largest force is " + rounded(scan.largest_force) +
-                        " N; --lifted keeps what is in the air");
+                        " N; --keep-air keeps what is in the air");
 }
 
-// Over the mesh, or over a plane where there is none.
+// Returns heights over the mesh, or over a plane if there is none.
 ScanHeights heightsOf(const FilteredScan& scan, const std::optional<Over>& over, const Inputs& in,
                       const FilterOptions& options) {
   const std::vector<CameraPose>& poses = in.poses.values;
-  const ProbeModel& probe = in.rig.probe;
-  if (!over) return scanHeights(scan, poses, probe, in.rig.gravity, options.normal);
+  if (!over) return heightsOverPlane(scan, poses, in.rig, options.normal);
   try {
     return heightsOverMesh(over->target, scan, poses, in.rig, over->found.mesh_from_scan,
                            over->found.compliance);
@@ -232,13 +309,26 @@ ScanHeights heightsOf(const FilteredScan& scan, const std::optional<Over>& over,
   }
 }
 
+// Names the poses in errors of the filter, which knows no files.
+FilteredScan filteredOf(const Inputs& in, const FilterOptions& options, const ScanFilter& filter,
+                        Progress& progress) {
+  try {
+    return filterStreams({in.poses.values, in.samples.values, in.rates}, in.rig, filter, progress);
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    throw FileError(options.input.string(), 0, error.what());
+  }
+}
+
 int runFilter(FilterOptions options, Console& console) {
   findFiles(options);
   if (options.over.empty())
-    console.warnOfNoEffect({"--registration", "--tip-radius", "--unit"}, "without --over");
+    console.warnOfNoEffect({"--registration", "--tip-radius", "--unit"},
+                           "without --reference-mesh");
   std::vector<std::filesystem::path> inputs = {options.input, options.probe, options.rig,
                                                options.truth, options.over,  options.registration};
-  inputs.push_back(options.input.parent_path() / "frames.csv"); // of the same scan
+  inputs.push_back(options.input.parent_path() / "frames.csv"); // frames of the same scan
   requireWritable(options.output, inputs, FileKind::table);
   if (options.normal && options.heights.empty())
     throw Error("--normal: is that of heights; name a file for them with --heights");
@@ -247,8 +337,8 @@ int runFilter(FilterOptions options, Console& console) {
     if (areOne(options.heights, options.output))
       throw FileError(options.heights.string(), 0, "is the path's file too");
   }
-  const std::optional<Over> over = readOver(options, console);
   const Inputs in = read(options, console);
+  const std::optional<Over> over = readOver(options, in.rig, console);
   ScanFilter filter;
   filter.model = chosenModel(options, in);
   filter.smooth = !options.forward;
@@ -258,8 +348,7 @@ int runFilter(FilterOptions options, Console& console) {
   if (with_heights && filter.model != PathModel::fused)
     throw Error("--heights: come from the accelerometers of the fused --model");
   const auto begin = std::chrono::steady_clock::now();
-  const FilteredScan scan =
-      filterScan(in.poses.values, in.samples.values, in.rig.probe, filter, console.progress());
+  const FilteredScan scan = filteredOf(in, options, filter, console.progress());
   requireTouch(scan, options);
   std::optional<ScanHeights> heights;
   if (with_heights) heights = heightsOf(scan, over, in, options);
@@ -297,10 +386,11 @@ int runFilter(FilterOptions options, Console& console) {
   }
   if (heights) reportHeights(*heights, report);
   report.set("seconds", taken.count());
-  for (const std::string& doubt : scan.doubts) console.warn(options.input.string() + ": " + doubt);
+  for (const std::string& doubt : scan.warnings)
+    console.warn(options.input.string() + ": " + doubt);
   warnOf(scan.without_pose, options.input, in.poses, nullptr, "a pose", console);
   warnOf(scan.without_sample, options.probe, in.samples,
-         scan.clock && scan.clock->differs ? &*scan.clock : nullptr, "a sample", console);
+         scan.clock && scan.clock->is_significant ? &*scan.clock : nullptr, "a sample", console);
   return console.report(report);
 }
 
@@ -317,16 +407,17 @@ Command filterCommand() {
       .description =
           "SCAN is a scan folder (poses.tum, probe.csv, rig.json; truth.csv where it was "
           "simulated) or a file of poses, beside which rig.json is looked for.\n"
-          "fused: camera and accelerometers together, a sample of the path for each of the "
-          "probe. acceleration, velocity: poses alone, whose motion is taken to have a steady "
+          "fused: camera and accelerometers together, a sample of the path for each of the probe. "
+          "acceleration, velocity: poses alone, whose motion is taken to have a steady "
           "acceleration or velocity. Poses that do not fit are rejected and counted.\n"
           "--heights writes the surface's height along the path, from the accelerometers, with its "
-          "sigma: above the plane through where the tip touched, or along --normal; what is below "
-          "the camera's noise is found, slow shape is the camera's. Where the probe was pressed "
-          "while it stood, the surface's stiffness is reported and taken off. With --over and "
-          "--registration heights are those over a mesh, whose shape is then no part of them, and "
-          "the way is that over the mesh.\n"
-          "With a probe only samples that touch, by their force, become path. Gaps are bridged, "
+          "sigma, above the plane through the contact points, or along --normal. Details below the "
+          "camera's noise come from the accelerometers, slow shape from the camera. If the probe "
+          "was pressed while it stood still, the surface's stiffness is reported and its "
+          "indentation removed. With --reference-mesh and --registration heights are relative to a "
+          "mesh, and "
+          "the arc length is along the mesh.\n"
+          "With a probe the path has only samples in contact, by their force. Gaps are bridged, "
           "reported, and sigma grows in them. Where there is a truth, the error against it is "
           "reported.",
       .examples = {"patina filter scan -o path.csv",
@@ -339,32 +430,22 @@ Command filterCommand() {
            {"--rig", "RIG.json", "", "", "Tip, accelerometers, gravity.", into(options->rig)},
            {"--truth", "TRUTH.csv", "", "", "A path to compare with.", into(options->truth)},
            {"--model", "fused|acceleration|velocity", "", "what the files allow",
-            "How motion is modelled.",
-            [options](const std::string& word) { options->model = parseModel(word); }},
-           {"--smooth", "", "", "", "Each sample knows the poses after it too: the default.",
-            [options](const std::string&) { options->forward = false; }},
-           {"--forward", "", "", "", "Each sample knows the poses before it only.",
+            "How motion is modelled.", parsedInto(options->model, parseModel)},
+           {"--no-smoother", "", "", "", "Each sample uses only the poses before it.",
             into(options->forward)},
            writtenTo(options->heights, "--heights", "HEIGHTS.csv",
                      "Heights along the path, with sigma."),
            {"--normal", "X,Y,Z", "", "of the plane that was touched",
-            "Outwards, in the camera's frame.",
-            [options](const std::string& word) { options->normal = parseNormal(word); }},
-           {"--over", "MESH", "", "",
+            "Outwards, in the camera's frame.", parsedInto(options->normal, parseNormal)},
+           {"--reference-mesh", "MESH", "", "",
             "Heights over a mesh, along its normals, in place of a plane.", into(options->over)},
            {"--registration", "R.json", "", "", "Where the scan lies on it: of patina register.",
             into(options->registration)},
-           {"--tip-radius", "LENGTH", "m", "0", "Of the probe, as in that registration.",
-            inRange(
-                0, 1, [options](double radius) { options->tip_radius = radius; },
-                NumberKind::length)},
-           {"--unit", "UNIT", "", "mm", "Of that mesh: mm, cm, m, in or fit.",
-            parsedInto(options->unit, parseMeshUnit)},
-           {"--lifted", "", "", "", "Keep what the probe did in the air.", into(options->lifted)},
+           tipRadius(options->tip_radius, "that of rig.json"),
+           unitOfMesh(options->unit),
+           {"--keep-air", "", "", "", "Keep what the probe did in the air.", into(options->lifted)},
            {"--sigma", "LENGTH", "m", "0.2mm", "Deviation of poses that do not tell their own.",
-            inRange(
-                1e-9, 1, [options](double s) { options->sigmas.position = s; },
-                NumberKind::length)},
+            numberInto(1e-9, 1, options->sigmas.position, NumberKind::length)},
            {"--sigma-angle", "DEG", "deg", "0.27", "The same of their angles.",
             inRange(1e-6, 90, degrees)}},
       .run = [options](Console& console) { return runFilter(*options, console); }};

@@ -4,8 +4,9 @@
 
 #include "acquisition/files/measured.h"
 #include "acquisition/files/registered_file.h"
+#include "acquisition/profilometer/measured_heights.h"
+#include "acquisition/profilometer/square_area.h"
 #include "acquisition/texture/fit_plane.h"
-#include "acquisition/texture/fit_texture.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
@@ -22,7 +23,7 @@ namespace {
 struct FitTextureOptions {
   std::filesystem::path profile, registration, output;
   FitOptions1d fit;
-  std::optional<double> length, height; // of a picture
+  std::optional<double> length, height; // size of a picture
   PlaneFitOptions plane;
   std::optional<int> harmonics;
   std::optional<double> blend;
@@ -48,12 +49,33 @@ const Keys kFitKeys = {
     {"left_out", "m", "left out", "rms of what --cutoff leaves out", Shown::if_any},
     {"noise", "1/m", "noise", "of a harmonic over the square of its wavelength: the median of all",
      Shown::if_any},
-    {"quiet", "", "quiet", "harmonics that --over-noise left out", Shown::if_any},
+    {"quiet", "", "quiet", "harmonics that --min-snr left out", Shown::if_any},
     {"blended", "m", "blended", "rms of what was changed so that the ends meet", Shown::if_any},
     {"wavelength", "m", "wavelength", "of the strongest harmonic", Shown::if_any},
     {"finest", "m", "finest wave", "that the texture can have, of its period over the harmonics"},
     {"low", "m", "lowest point", "of the texture, from its mean"},
     {"compliance", "m/N", "compliance", "", Shown::if_any}};
+
+// Reads a profilometer's file, which must be an area or a profile.
+MeasuredHeights readMeasured(const std::filesystem::path& path, bool is_area, Console& console) {
+  std::vector<std::string> warnings;
+  MeasuredHeights measured = readMeasuredHeights(path, warnings);
+  if (measured.isArea() != is_area)
+    throw FileError(path.string(), 0,
+                    is_area ? "is a profile, not an area: --kind line makes a texture of it"
+                            : "is an area: --kind plane or products makes a texture of it");
+  for (const std::string& line : warnings) console.warn(line);
+  return measured;
+}
+
+std::vector<ProfilePoint> readMeasuredProfile(const FitTextureOptions& options, Console& console) {
+  console.warnOfNoEffect({"--interval"}, "on a profilometer's file");
+  const MeasuredHeights measured = readMeasured(options.profile, false, console);
+  std::vector<ProfilePoint> points;
+  for (std::size_t i = 0; i < measured.along.size(); ++i)
+    points.push_back({measured.along[i] - measured.along[0], measured.heights[i], 0});
+  return points;
+}
 
 // The stretch that was asked for, or the one that goes farthest.
 std::vector<ProfilePoint> readProfile(FitTextureOptions& options, Console& console) {
@@ -69,7 +91,7 @@ std::vector<ProfilePoint> readProfile(FitTextureOptions& options, Console& conso
       if (reader.has(columns[i]))
         requireMeasured(row[i], columns[i], options.profile.string(), reader.line());
     std::vector<ProfilePoint>& points = stretches[stretch ? std::llround(row[3]) : 0];
-    if (!points.empty() && row[0] < points.back().along)
+    if (!points.empty() && row[0] < points.back().arc_length)
       throw FileError(options.profile.string(), reader.line(), "along [m] runs backwards");
     points.push_back(
         {row[0], row[1], sigma ? row[2] : 0, speed ? std::optional(row[4]) : std::nullopt});
@@ -85,36 +107,58 @@ std::vector<ProfilePoint> readProfile(FitTextureOptions& options, Console& conso
   }
   const auto longest =
       std::max_element(stretches.begin(), stretches.end(), [](const auto& a, const auto& b) {
-        return a.second.back().along - a.second.front().along <
-               b.second.back().along - b.second.front().along;
+        return a.second.back().arc_length - a.second.front().arc_length <
+               b.second.back().arc_length - b.second.front().arc_length;
       });
   if (stretches.size() > 1)
     console.warn(options.profile.string() + ": has " + formatCount(stretches.size()) +
                  " stretches, of which " + std::to_string(longest->first) +
-                 ", the longest, is fitted; --stretch chooses another");
+                 ", the longest, is fitted; --interval chooses another");
   return longest->second;
 }
 
-constexpr double kUsualSpeed = 0.1; // of a hand that strokes [m/s]
+constexpr double kUsualSpeed = 0.1; // typical speed of a stroke [m/s]
 constexpr const char* kKinds[] = {"line", "spectrum", "crossed", "plane", "products"};
 using Kind = FitTextureOptions::Kind;
 
-// PROFILE is a picture of heights.
+// Reads heights over a square: a picture of them, or what a profilometer measured.
+Picture readSquare(const FitTextureOptions& options, PlaneFitOptions& fit, Console& console) {
+  const std::string name = options.profile.string();
+  if (!isProfilometerFile(options.profile)) {
+    if (!options.length || !options.height)
+      throw Error("--kind " + std::string(kKinds[static_cast<std::size_t>(options.kind)]) +
+                  ": a picture needs --length, of its side, and --height, of white above black");
+    fit.length = *options.length;
+    fit.height = *options.height;
+    fit.blend = options.blend.value_or(0);
+    return readPicture(options.profile);
+  }
+  console.warnOfNoEffect({"--length", "--height"}, "on a profilometer's file");
+  const MeasuredHeights measured = readMeasured(options.profile, true, console);
+  SquareArea square;
+  std::vector<std::string> warnings;
+  try {
+    square = squareOf(measured, warnings);
+  } catch (const Error& error) {
+    throw FileError(name, 0, error.what());
+  }
+  for (const std::string& line : warnings) console.warn(name + ": " + line);
+  fit.length = square.length;
+  fit.height = square.height;
+  fit.blend = options.blend.value_or(FitOptions1d{}.blend);
+  return std::move(square.picture);
+}
+
+// PROFILE is heights over x and y.
 int runFitPlane(const FitTextureOptions& options, Console& console) {
-  if (!options.length || !options.height)
-    throw Error("--kind " + std::string(kKinds[static_cast<std::size_t>(options.kind)]) +
-                ": a picture needs --length, of its side, and --height, of white above black");
   PlaneFitOptions fit = options.plane;
-  fit.length = *options.length;
-  fit.height = *options.height;
-  fit.blend = options.blend.value_or(0);
   fit.harmonics = options.harmonics.value_or(fit.harmonics);
-  if (fit.harmonics > kMostPlaneHarmonics)
-    throw Error("--harmonics: a picture's are at most " + std::to_string(kMostPlaneHarmonics));
+  if (fit.harmonics > kMaxPlaneHarmonics)
+    throw Error("--harmonics: a picture's are at most " + std::to_string(kMaxPlaneHarmonics));
   if (options.kind == Kind::plane && fit.rank) throw Error("--rank: is of --kind products");
   if (options.kind == Kind::products && !fit.rank) fit.rank = 0;
   FittedPlane fitted;
-  const Picture picture = readPicture(options.profile);
+  const Picture picture = readSquare(options, fit, console);
   try {
     fitted = fitPlane(picture, fit, console.progress());
   } catch (const Error& error) {
@@ -131,7 +175,7 @@ int runFitPlane(const FitTextureOptions& options, Console& console) {
       .set("omega", texture.omega)
       .set("samples", static_cast<std::size_t>(picture.width));
   if (fitted.rank > 0)
-    report.set("rank", static_cast<std::size_t>(fitted.rank)).set("lacking", fitted.lacking);
+    report.set("rank", static_cast<std::size_t>(fitted.rank)).set("lacking", fitted.relative_error);
   report.set("rms", fitted.rms)
       .set("residual", fitted.residual)
       .set("variance_explained", 1 - fitted.residual * fitted.residual / fitted.rms / fitted.rms)
@@ -144,20 +188,22 @@ int runFitPlane(const FitTextureOptions& options, Console& console) {
 int runFitTexture(FitTextureOptions options, Console& console) {
   requireWritable(options.output, {options.profile, options.registration}, FileKind::json);
   if (options.stiffness && !options.registration.empty())
-    throw Error("--stiffness: --registration tells it too; one of them");
+    throw Error("--stiffness: --registration contains it too; give one of them");
   if (options.kind != Kind::spectrum) console.warnOfNoEffect({"--seed"}, "without --kind spectrum");
   if (options.kind == Kind::plane || options.kind == Kind::products) {
-    console.warnOfNoEffect({"--step", "--cutoff", "--over-noise", "--stretch", "--registration"},
-                           "on a picture");
+    console.warnOfNoEffect({"--step", "--cutoff", "--min-snr", "--interval", "--registration"},
+                           "on a picture or an area");
     return runFitPlane(options, console);
   }
   if (options.length || options.height || options.plane.rank)
-    throw Error("--length, --height and --rank: are of a picture, --kind plane or products");
+    throw Error("--length, --height and --rank: are of --kind plane or products");
   options.fit.harmonics = options.harmonics.value_or(options.fit.harmonics);
   options.fit.blend = options.blend.value_or(options.fit.blend);
   FittedTexture fitted;
   try {
-    fitted = fitTexture(readProfile(options, console), options.fit);
+    fitted = fitTexture(isProfilometerFile(options.profile) ? readMeasuredProfile(options, console)
+                                                            : readProfile(options, console),
+                        options.fit);
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
@@ -193,10 +239,10 @@ int runFitTexture(FitTextureOptions options, Console& console) {
       .set("rms", fitted.rms)
       .set("residual", fitted.residual)
       .set("variance_explained", 1 - fitted.residual * fitted.residual / fitted.variance)
-      .set("left_out", fitted.left_out)
+      .set("left_out", fitted.removed_rms)
       .set("noise", fitted.noise,
            formatLength(fitted.noise * 1e-6) + " at a wavelength of 1 mm, growing as its square")
-      .set("quiet", fitted.quiet)
+      .set("quiet", fitted.suppressed_harmonics)
       .set("blended", fitted.blended)
       .set("wavelength", fitted.length / static_cast<double>(strongest + 1))
       .set("finest", finest,
@@ -225,7 +271,7 @@ Command fitTextureCommand() {
       .name = "fit-texture",
       .summary = "heights become a Fourier texture",
       .description =
-          "PROFILE.csv has the columns along [m],height [m], or those of patina filter --heights, "
+          "PROFILE has the columns along [m],height [m], or those of patina filter --heights, "
           "with sigmas and stretches of contact. A line is taken off, the best one beside the "
           "lowest harmonics, so that no whole wave passes for a slope; the end is blended "
           "into the beginning with one slope, and the rest becomes harmonics of a fundamental of "
@@ -233,62 +279,49 @@ Command fitTextureCommand() {
           "line: a height along x. spectrum: its amplitudes with phases that a seed draws. "
           "crossed: its cross-correlation with itself, a height over x and y.\n"
           "plane, products: PROFILE is a square picture of heights, which repeats itself or is "
-          "blended so that it does. plane keeps every harmonic over x and y; products is its best "
-          "sum of products of a line along x and one along y, the fewest that lack a hundredth of "
-          "its rms, or --rank of them.",
+          "blended so that it does, or an area that a profilometer measured. plane keeps every "
+          "harmonic over x and y; products is its best sum of products of a line along x and one "
+          "along y, the fewest that lack a hundredth of its rms, or --rank of them.\n"
+          "A profilometer's file, of a profile or an area, is an X3P, an SDF, a text of Gwyddion, "
+          "or a table with the columns x and z, or x, y and z, with their units. Of an area the "
+          "square in its middle is taken, without its slope. Lengths are those of the file.",
       .examples = {"patina fit-texture heights.csv -o grain.json --registration r.json",
                    "patina fit-texture profile.csv -o grain.json --harmonics 64 --kind crossed",
+                   "patina fit-texture leather.x3p -o leather.json --kind products",
                    "patina fit-texture cloth.png -o cloth.json --kind products --length 20mm "
                    "--height 0.3mm"},
       .keys = kFitKeys,
       .arguments =
-          {input("PROFILE", "Heights along a way, or a picture of heights.",
+          {input("PROFILE", "Heights along a way, a picture of heights, or a profilometer's file.",
                  into(options->profile)),
            outputTo(options->output, "T.json", "The texture."),
            {"--harmonics", "N", "", "128, of a picture 32", "At most.",
-            inRange(
-                1, kMostHarmonics,
-                [options](double n) { options->harmonics = static_cast<int>(n); },
-                NumberKind::whole)},
+            numberInto(1, kMaxHarmonics, options->harmonics, NumberKind::whole)},
            {"--kind", "line|spectrum|crossed|plane|products", "", "line", "What the heights are.",
             parsedInto(options->kind, parseKind)},
            {"--seed", "N", "", "1", "Of a spectrum's phases.",
-            inRange(
-                0, 1e9, [options](double n) { options->seed = static_cast<std::uint64_t>(n); },
-                NumberKind::whole)},
+            numberInto(0, 1e9, options->seed, NumberKind::whole)},
            {"--blend", "PART", "", "0.01, of a picture 0", "Of the profile, at its end.",
-            inRange(1e-6, 0.5, [options](double part) { options->blend = part; })},
+            numberInto(1e-6, 0.5, options->blend)},
            {"--length", "LENGTH", "m", "", "Of a picture's side.",
-            inRange(
-                1e-6, 10, [options](double length) { options->length = length; },
-                NumberKind::length)},
+            numberInto(1e-6, 10, options->length, NumberKind::length)},
            {"--height", "LENGTH", "m", "", "Of a picture's white above its black.",
-            inRange(
-                1e-9, 1, [options](double height) { options->height = height; },
-                NumberKind::length)},
+            numberInto(1e-9, 1, options->height, NumberKind::length)},
            {"--rank", "R", "", "as few as serve", "Of products.",
-            inRange(
-                1, 2 * kMostPlaneHarmonics + 1,
-                [options](double rank) { options->plane.rank = static_cast<int>(rank); },
-                NumberKind::whole)},
+            numberInto(1, 2 * kMaxPlaneHarmonics + 1, options->plane.rank, NumberKind::whole)},
            {"--step", "LENGTH", "m", "the points' median", "Of the even samples.",
-            inRange(
-                1e-9, 1, [options](double step) { options->fit.step = step; }, NumberKind::length)},
+            numberInto(1e-9, 1, options->fit.step, NumberKind::length)},
            {"--cutoff", "LENGTH", "m", "of a scan 8mm",
             "Leave out longer waves: the shape of what was scanned, which its mesh has. Of a scan, "
             "what the tip was drawn over too slowly to be known, too.",
-            inRange(
-                1e-9, 1, [options](double length) { options->fit.cutoff = length; },
-                NumberKind::length)},
-           {"--over-noise", "RATIO", "", "0",
+            numberInto(1e-9, 1, options->fit.cutoff, NumberKind::length)},
+           {"--min-snr", "RATIO", "", "0",
             "Leave out harmonics that are not so many times as high as the noise.",
-            inRange(0, 1e3, [options](double ratio) { options->fit.over_noise = ratio; })},
-           {"--stretch", "N", "", "the longest", "Of contact.",
-            inRange(
-                0, 1e9, [options](double n) { options->stretch = static_cast<std::size_t>(n); },
-                NumberKind::whole)},
+            numberInto(0, 1e3, options->fit.min_snr)},
+           {"--interval", "N", "", "the longest", "Of contact.",
+            numberInto(0, 1e9, options->stretch, NumberKind::whole)},
            {"--stiffness", "K", "N/m", "", "Of the material, where it was measured.",
-            inRange(1e-3, 1e9, [options](double k) { options->stiffness = k; })},
+            numberInto(1e-3, 1e9, options->stiffness)},
            {"--registration", "R.json", "", "",
             "In its place: of the scan, whose compliance patina register has found.",
             into(options->registration)},

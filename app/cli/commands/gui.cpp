@@ -13,7 +13,7 @@ namespace {
 
 struct GuiOptions {
   std::filesystem::path input;
-  std::vector<std::string> words; // for the window, checked here
+  std::vector<std::string> words; // arguments for the window, checked here
 };
 
 int runGui(const GuiOptions& options) {
@@ -55,15 +55,15 @@ Command guiCommand() {
   return {
       .name = "gui",
       .summary = "the window",
-      .description = "Starts patina-gui, which stands beside this program and has the same "
-                     "options. It needs a display; on a machine without one: xvfb-run -a patina "
-                     "gui --tour FOLDER.",
+      .description =
+          "Starts patina-gui, which is installed beside this program and has the same options. It "
+          "needs a display; on a machine without one start it under xvfb-run -a.",
       .examples = {"patina gui bunny.ply --unit cm", "patina gui workspace --log session.csv"},
       .keys = {},
       .arguments =
           {input("INPUT",
                  "Workspace, mesh (.obj .ply .stl) or volume (.vti); without one, a page to "
-                 "begin from, or with --tour or --log the toy dinosaur.",
+                 "begin from, or with --log the toy dinosaur.",
                  into(options->input), Times::at_most_once),
            {"--unit", "mm|cm|m|in|fit", "", "mm", "Unit of a mesh file.",
             pass("--unit", parseMeshUnit)},
@@ -71,11 +71,8 @@ Command guiCommand() {
             pass("--up", parseUpAxis)},
            {"--iso", "VALUE", "", "", "Value at which a volume (.vti) from elsewhere is a surface.",
             pass("--iso", number)},
-           {"--log", "FORCES.csv", "", "", "Record every tick; written when the window closes.",
+           {"--log", "FORCES.csv", "", "", "Record every tick, on disk within a second.",
             pass("--log", anything)},
-           {"--tour", "FOLDER", "", "",
-            "A scripted session: pictures and forces into the folder, then quit.",
-            pass("--tour", anything)},
            {"--demo", "", "", "", "From a scan to a feel on the toy, step by step in the window.",
             pass("--demo", anything)},
            {"--first-picture-time", "", "", "",

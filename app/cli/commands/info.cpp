@@ -1,23 +1,129 @@
+#include <algorithm>
 #include <optional>
 #include <set>
 
 #include "app/cli/commands/commands.h"
+#include "app/cli/framework/report.h"
 #include "app/cli/input/scene_options.h"
-#include "app/cli/output/paint_report.h"
 #include "app/cli/output/reports.h"
 #include "app/cli/output/stability_report.h"
+#include "authoring/relief/relief_limits.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "geometry/mesh/mesh_report.h"
-#include "geometry/mesh/open_parts.h"
-#include "session/build/compile_warnings.h"
-#include "session/build/stage_cost.h"
+#include "geometry/sides/open_parts.h"
+#include "session/compile/compile_scene.h"
+#include "session/compile/compile_warnings.h"
+#include "session/open/stage_cost.h"
 #include "session/store/attach_scan.h"
-#include "visualization/export/field_io.h"
+#include "visualization/files/field_io.h"
 
 namespace patina::cli {
-
 namespace {
+
+// Paint part of `patina info`; empty without paint.
+
+void add(std::vector<LayerBytes>& layers, const std::string& name, std::size_t bytes) {
+  if (bytes == 0) return;
+  const auto same = std::find_if(layers.begin(), layers.end(),
+                                 [&](const LayerBytes& layer) { return layer.name == name; });
+  if (same == layers.end())
+    layers.push_back({name, bytes});
+  else
+    same->bytes += bytes;
+}
+
+void addPainted(std::vector<LayerBytes>& layers, const ObjectPaint& paint) {
+  if (paint.color) add(layers, "color", paint.color->bytes());
+  if (paint.relief) add(layers, "relief", paint.relief->bytes());
+  if (paint.layout.uvs && paint.layout.generated)
+    add(layers, "chart atlas", paint.layout.uvs->size() * sizeof((*paint.layout.uvs)[0]));
+  if (!paint.material) return;
+  for (const MaterialChannel channel : kAllMaterialChannels) {
+    std::size_t blocks = 0;
+    for (const auto& [index, block] : paint.material->blocks())
+      blocks += block.layer[static_cast<std::size_t>(channel)] != nullptr;
+    add(layers, std::string(name(channel)), blocks * sizeof(MaterialLayer));
+  }
+}
+
+// Worst object: the one that exceeds its limit most, otherwise the highest.
+struct Worst {
+  ReliefLimit limit;
+  std::string object;
+};
+
+double excess(const ReliefLimit& limit) {
+  return limit.admissible ? limit.highest / *limit.admissible : 0;
+}
+
+std::optional<Worst> worstRelief(const CompiledScene& compiled) {
+  std::optional<Worst> worst;
+  for (std::size_t i = 0; i < compiled.paint.relief.size(); ++i) {
+    if (!compiled.paint.relief[i].felt) continue;
+    const SceneObject& object = compiled.scene.objects[i];
+    const ReliefLimit limit =
+        reliefLimit(*compiled.objects[i]->mesh, object.paint->layout,
+                    *compiled.paint.relief[i].felt, compiled.scene.relief.height,
+                    compiled.scene.device_model, compiled.scene.haptics.force_limit);
+    const bool worse = !worst || std::pair(excess(limit), limit.highest) >
+                                     std::pair(excess(worst->limit), worst->limit.highest);
+    if (limit.highest > 0 && worse) worst = Worst{limit, object.name};
+  }
+  return worst;
+}
+
+// Bytes of each kind of paint and of its haptic data.
+std::vector<LayerBytes> paintLayers(const CompiledScene& compiled) {
+  std::vector<LayerBytes> layers;
+  for (const SceneObject& object : compiled.scene.objects)
+    if (object.paint) addPainted(layers, *object.paint);
+  const HapticPaint& felt = compiled.paint;
+  for (const HapticObject& object : felt.objects) {
+    if (object.material) add(layers, "felt material", object.material->bytes());
+    if (object.relief) add(layers, "felt relief", bytes(*object.relief->faces));
+  }
+  for (const HapticRelief& relief : felt.relief) {
+    if (relief.grey.grey) add(layers, "grey of colour", relief.grey.grey->bytes());
+    if (relief.felt != relief.source) add(layers, "smoothed relief", relief.felt->bytes());
+    if (relief.smoother) add(layers, "relief smoothing", relief.smoother->bytes());
+    if (relief.curvature_map) add(layers, "relief curvature", relief.curvature_map->bytes());
+  }
+  if (felt.bake) {
+    add(layers, "relief bake", felt.bake->bytes());
+    const auto own = [](const SurfaceField& field) { return field.bytes(); };
+    if (felt.field != compiled.built.field) add(layers, "baked field", own(*felt.field));
+  }
+  return layers;
+}
+
+// Height of the relief and its limit on the scene's device (F7); nullopt without relief.
+const Keys& reliefKeys() {
+  static const Keys keys = {{"object", "", "object", "", Shown::never},
+                            {"highest", "m", "relief", "at most"},
+                            {"wavelength", "m", "wavelength", "", Shown::never},
+                            {"admissible", "m", "admissible", "with a device", Shown::never},
+                            {"exceeded", "", "exceeded", "", Shown::never}};
+  return keys;
+}
+
+std::optional<Report> reliefReport(const CompiledScene& compiled) {
+  const std::optional<Worst> worst = worstRelief(compiled);
+  if (!worst) return std::nullopt;
+  const ReliefLimit& limit = worst->limit;
+  const bool exceeded = excess(limit) > 1;
+  std::string text = formatLength(limit.highest) + " at most, as curved as a wave of " +
+                     formatLength(limit.wavelength);
+  if (limit.admissible)
+    text += "; at " + formatNumber(compiled.scene.haptics.force_limit) +
+            " N, the force limit, the device bears " + formatLength(*limit.admissible) +
+            (exceeded ? ": it will buzz, smooth it" : "");
+  Report report(reliefKeys());
+  report.set("object", worst->object).set("highest", limit.highest, text);
+  report.set("wavelength", limit.wavelength);
+  if (limit.admissible) report.set("admissible", *limit.admissible).set("exceeded", exceeded);
+  return report;
+}
 
 struct InfoOptions {
   std::filesystem::path input;
@@ -91,14 +197,14 @@ void describeDefects(const MeshReport& mesh, Report& report) {
   report.set("defects", json, found.empty() ? "none" : joined(found));
 }
 
-constexpr std::size_t kMostListed = 100; // parts and holes
+constexpr std::size_t kMaxListed = 100; // max listed parts and holes
 
 void describeParts(std::vector<PartSides> parts, Report& report) {
   std::stable_sort(parts.begin(), parts.end(), [](const PartSides& a, const PartSides& b) {
     return a.triangles > b.triangles;
   });
   Json list = Json::array();
-  for (std::size_t i = 0; i < std::min(parts.size(), kMostListed); ++i)
+  for (std::size_t i = 0; i < std::min(parts.size(), kMaxListed); ++i)
     list.push(Json::object()
                   .set("triangles", parts[i].triangles)
                   .set("boundary_edges", parts[i].rim_edges)
@@ -109,7 +215,7 @@ void describeParts(std::vector<PartSides> parts, Report& report) {
 
 void describeHoles(const std::vector<Hole>& holes, Report& report) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < std::min(holes.size(), kMostListed); ++i)
+  for (std::size_t i = 0; i < std::min(holes.size(), kMaxListed); ++i)
     list.push(Json::object()
                   .set("area", holes[i].area)
                   .set("centre", vectorJson(holes[i].centre))
@@ -120,7 +226,7 @@ void describeHoles(const std::vector<Hole>& holes, Report& report) {
                                  describeHole(holes.front()));
 }
 
-// `built`: what a field of the mesh says of its sides.
+// `built`: the sides that a field of the mesh finds.
 void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, const FieldReport& built,
                   const Scene& scene, Report& report) {
   const Box3 box = bounds(mesh);
@@ -145,18 +251,23 @@ void describeMesh(const TriangleMesh& mesh, const MeshReport& counts, const Fiel
   describeHoles(built.holes, report);
 }
 
-// As a field of the scene would find it.
+// Returns the object's own mesh where its pose moves nothing, so that it is held once.
+std::shared_ptr<const TriangleMesh> sharedWorldMesh(const SceneObject& object) {
+  if (object.world_from_object.matrix().isIdentity(0.0)) return object.mesh;
+  return std::make_shared<const TriangleMesh>(worldMesh(object));
+}
+
+// Finds the sides without building the field.
 FieldReport sidesWithoutField(const Scene& scene) {
   Box3 box;
-  for (const SceneObject& object : scene.objects) box.extend(fieldBounds(worldMesh(object)));
+  for (const SceneObject& object : scene.objects) box.extend(fieldBounds(*sharedWorldMesh(object)));
   const double voxel = scene.field.voxel.value_or(
       box.isEmpty()
           ? 0
           : box.sizes().maxCoeff() / std::max(1.0, scene.field.resolution - 2 * scene.field.band));
   FieldReport found;
   for (const SceneObject& object : scene.objects) {
-    const TriangleMesh mesh = worldMesh(object);
-    const OpenParts open = openParts(mesh, scene.field.sides, voxel);
+    const OpenParts open = openParts(*sharedWorldMesh(object), scene.field.sides, voxel);
     found.inner_triangles += open.inner_triangles;
     found.open_triangles += open.triangles;
     found.parts.insert(found.parts.end(), open.decided.begin(), open.decided.end());
@@ -166,8 +277,11 @@ FieldReport sidesWithoutField(const Scene& scene) {
 }
 
 void describeMesh(const Scene& scene, Report& report, Console& console) {
-  const TriangleMesh mesh = worldMesh(scene);
   const FieldReport found = sidesWithoutField(scene);
+  const auto shared = scene.objects.size() == 1
+                          ? sharedWorldMesh(scene.objects.front())
+                          : std::make_shared<const TriangleMesh>(worldMesh(scene));
+  const TriangleMesh& mesh = *shared;
   describeMesh(mesh, inspect(mesh), found, scene, report);
   report.set("inner_triangles", found.inner_triangles);
   for (const std::string& line : surfaceWarnings(found, scene.field.sides, mesh))
@@ -190,7 +304,7 @@ std::size_t bytesOf(const TriangleMesh& mesh) {
          mesh.corner_uvs.size() * sizeof(mesh.corner_uvs[0]);
 }
 
-// Of the meshes as they were read, where they are not the one in the world's frame.
+// Memory of meshes in object frames that differ from the world-frame mesh.
 std::size_t givenMeshBytes(const CompiledScene& compiled) {
   std::set<const TriangleMesh*> counted = {compiled.mesh.get()};
   std::size_t bytes = 0;
@@ -204,7 +318,7 @@ std::vector<LayerBytes> layersOf(const CompiledScene& compiled) {
   if (const std::size_t bytes = givenMeshBytes(compiled)) layers.push_back({"mesh as read", bytes});
   for (LayerBytes& layer : compiled.built.field->layerBytes()) layers.push_back(std::move(layer));
   for (LayerBytes& layer : paintLayers(compiled)) layers.push_back(std::move(layer));
-  // What several objects hold so that one may be moved without the others being built again.
+  // Data that let one object move without a rebuild of the others.
   if (const std::size_t bytes = mergeBytes(compiled)) layers.push_back({"merge", bytes});
   return layers;
 }
@@ -245,14 +359,13 @@ void describeCompiled(const CompiledScene& compiled, Report& report, Progress& p
   describeLayers(layersOf(compiled), compiled.scene, report);
   describeStages(compiled, report);
   if (const auto relief = reliefReport(compiled)) report.set("relief", *relief);
-  // Without a device nothing is known that could be unstable.
+  // A stability limit needs a device.
   if (!compiled.scene.device_model) return;
   if (const auto stability = surfaceStability(compiled, progress))
     report.set("stability", stabilityReport(*stability, compiled.scene));
 }
 
-// What the file holds, and no stages: they would be those of another field, built anew from its
-// surface.
+// Describes the file itself without stages, which would belong to a field rebuilt from its surface.
 void describeFieldFile(const std::filesystem::path& path, const Scene& scene, Report& report,
                        Console& console) {
   describeMesh(scene, report, console);
@@ -311,14 +424,14 @@ Command infoCommand() {
       .name = "info",
       .summary = "what a mesh, field or workspace is and what it costs to feel",
       .description =
-          "Size, defects, whether the mesh is watertight and what of it is open and felt from one "
-          "side or two; the bytes of each layer of its field and of all that is held; the stages "
-          "of the servo that are on, why, and what each costs in bytes and ns (measured here, on "
-          "short strokes over the mesh). Of a field (.vti) written by patina: the file's own grid "
-          "and layers, and its surface as the mesh; stages stay empty. Where the scene has a "
-          "device (device.* values), the smallest K*(x)/K of the surface and where. Of a painted "
-          "scene also the bytes of its paint, how high its relief is and what height the device "
-          "bears, and the edits that can be undone.",
+          "Reports size, defects, whether the mesh is watertight, and which open parts are touched "
+          "from one side or both; the bytes of each layer of its field and of everything in "
+          "memory; the active stages of the servo, the reason, and the bytes and ns of each "
+          "(measured here, on short strokes over the mesh). Of a field (.vti) written by patina: "
+          "the file's own grid and layers, and its surface as the mesh; stages stay empty. For a "
+          "scene with a device (device.* values), the smallest K*(x)/K of the surface and its "
+          "place. For a painted scene also the bytes of its paint, the height of its relief and "
+          "the height that is stable on the device, and the edits that can be undone.",
       .examples = {"patina info bunny.ply", "patina info workspace --json",
                    "patina info huge.stl --unit m --no-field"},
       .keys = kInfoKeys,

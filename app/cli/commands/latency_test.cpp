@@ -5,11 +5,11 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
-#include "haptics/contact/plane.h"
-#include "haptics/devices/device_catalog.h"
-#include "haptics/devices/falcon/wire_run.h"
+#include "haptics/catalog/device_catalog.h"
+#include "haptics/law/plane.h"
 #include "haptics/servo/latency.h"
 #include "haptics/servo/servo_loop.h"
+#include "haptics/simulation/wire_benchmark.h"
 
 namespace patina::cli {
 
@@ -18,7 +18,7 @@ namespace {
 struct LatencyOptions {
   double seconds = 5, rate = 1000;
   bool wire = false;
-  WireRunSpec on_wire;
+  WireBenchmarkSpec on_wire;
   std::string device; // empty: none
 };
 
@@ -31,18 +31,22 @@ const Keys kLatencyTestKeys = {
     {"wait_us", "us", "of it waiting for a processor", "absent where the kernel does not count it",
      Shown::never, percentileParts()},
     {"missed", "", "missed", "wake-ups more than a period late"},
-    {"bare_late_us", "us", "late, bare timer", "with --wire, as those below", Shown::never,
-     percentileParts()},
+    {"bare_late_us", "us", "late, bare timer", "with --emulated-falcon, as those below",
+     Shown::never, percentileParts()},
     {"round_us", "us", "round trip", "", Shown::never, percentileParts()},
     {"bare_round_us", "us", "round trip, bare timer", "", Shown::never, percentileParts()},
     {"age_us", "us", "age of what is felt", "", Shown::never, percentileParts()},
     {"turns", "", "round trips answered"},
     {"faults", "", "faults noticed"},
-    {"injected", "", "of them on purpose"},
+    {"by_injection", "", "of them by injected faults",
+     "with the exchanges until the line is trusted again, as the next"},
+    {"by_delay", "", "of them by this machine, late"},
+    {"unexplained", "", "of them by neither"},
+    {"injected", "", "faults injected"},
     {"unnoticed", "", "of these, not noticed"},
     {"overruns", "", "round trips without a new command"},
     {"uncounted", "", "periods neither ticked nor missed"},
-    {"stale", "", "old places felt as new"},
+    {"stale", "", "old positions taken as new"},
     {"openings", "", "times it began to answer", "with --device, as the next"},
     {"held", "", "held back", "why no force, or not all of it, is given at the end", Shown::if_any},
     {"load", "", "load", "1-minute average at the start"}};
@@ -54,11 +58,11 @@ void setSpread(const char* key, const std::string& caption, const Percentiles& u
     report.tell(caption + ", " + percentile, shown(value, "us"));
 }
 
-// Servo, driver and an emulated Falcon, beside a bare timer with another.
+// Runs servo, driver and an emulated Falcon beside a bare timer.
 int runOnWire(const LatencyOptions& options, double load, Console& console) {
-  WireRunSpec spec = options.on_wire;
+  WireBenchmarkSpec spec = options.on_wire;
   spec.seconds = options.seconds;
-  const WireRun run = runOnEmulatedWire(spec, console.progress());
+  const WireBenchmark run = runOnEmulatedWire(spec, console.progress());
   Report report(kLatencyTestKeys);
   report.set("policy", run.policy).set("realtime", run.realtime);
   report.set("wakeups", static_cast<std::int64_t>(run.ticks));
@@ -68,20 +72,26 @@ int runOnWire(const LatencyOptions& options, double load, Console& console) {
   setSpread("bare_round_us", "round trip, bare timer", run.bare_round_us, report);
   setSpread("age_us", "age of what is felt", run.age_us, report);
   for (const auto& [key, count] : {std::pair{"missed", run.missed},
-                                   {"turns", run.turns},
+                                   {"turns", run.round_trips},
                                    {"faults", run.faults},
+                                   {"by_injection", run.causes.injected},
+                                   {"by_delay", run.causes.delayed},
+                                   {"unexplained", run.causes.unexplained},
                                    {"injected", run.injected},
-                                   {"unnoticed", run.unnoticed},
+                                   {"unnoticed", run.undetected_faults},
                                    {"overruns", run.overruns},
                                    {"uncounted", run.uncounted},
-                                   {"stale", run.stale}})
+                                   {"stale", run.outdated_states}})
     report.set(key, static_cast<std::int64_t>(count));
   report.set("load", load, rounded(load));
-  return console.report(report,
-                        run.stale + run.unnoticed + run.uncounted == 0 ? kDone : kNotSolved);
+  return console.report(
+      report,
+      run.outdated_states + run.undetected_faults + run.uncounted + run.causes.unexplained == 0
+          ? kDone
+          : kNotSolved);
 }
 
-// A device of the list, whose hand feels the plane through the middle of its workspace.
+// Runs a listed device whose hand touches the plane through the middle of its workspace.
 int runOnDevice(const LatencyOptions& options, double load, Console& console) {
   const DeviceEntry& entry = deviceNamed(options.device);
   DeviceSetup setup;
@@ -102,10 +112,10 @@ int runOnDevice(const LatencyOptions& options, double load, Console& console) {
     console.progress().report(std::min(t / options.seconds, 1.0), "turning with the device");
     for (ToolSample sample; loop.samples().pop(sample);) late.push_back(1e-3 * sample.late_ns);
   }
-  const std::string held = entry.linked ? heldBack(*setup.notes) : "";
+  const std::string held = entry.linked ? inhibitText(*setup.notes) : "";
   loop.stop();
   if (console.progress().cancelled()) throw Cancelled();
-  if (entry.linked && setup.notes->openings == 0)
+  if (entry.linked && setup.notes->connect_count == 0)
     throw DeviceError(setup.notes->cause().empty() ? options.device + " did not answer in time"
                                                    : setup.notes->cause());
   const ServoTiming timing = loop.timing();
@@ -118,10 +128,10 @@ int runOnDevice(const LatencyOptions& options, double load, Console& console) {
     const Percentiles round = setup.notes->round_trip.late();
     setSpread("round_us", "round trip",
               {1e-3 * round.p50, 1e-3 * round.p99, 1e-3 * round.p999, 1e-3 * round.max}, report);
-    for (const auto& [key, count] : {std::pair{"turns", setup.notes->turns.load()},
+    for (const auto& [key, count] : {std::pair{"turns", setup.notes->round_trips.load()},
                                      {"faults", setup.notes->faults.load()},
                                      {"overruns", setup.notes->overruns.load()},
-                                     {"openings", setup.notes->openings.load()}})
+                                     {"openings", setup.notes->connect_count.load()}})
       report.set(key, static_cast<std::int64_t>(count));
     report.set("held", held);
   }
@@ -133,9 +143,9 @@ int runLatencyTest(const LatencyOptions& options, Console& console) {
   double load = 0;
   if (getloadavg(&load, 1) != 1) load = 0;
   if (options.wire)
-    console.warnOfNoEffect({"--device", "--rate"}, "with --wire");
+    console.warnOfNoEffect({"--device", "--rate"}, "with --emulated-falcon");
   else
-    console.warnOfNoEffect({"--load", "--faults"}, "without --wire");
+    console.warnOfNoEffect({"--load", "--faults"}, "without --emulated-falcon");
   if (options.wire) return runOnWire(options, load, console);
   if (!options.device.empty()) return runOnDevice(options, load, console);
   console.endOnInterrupt();
@@ -161,33 +171,36 @@ Command latencyTestCommand() {
       .name = "latency-test",
       .summary = "how late this machine wakes a 1 kHz thread",
       .description =
-          "Runs the servo's own clock without device or scene and reports how late its "
-          "wake-ups were. Run it while the machine does what it will do during your "
-          "experiment. policy says whether the system granted real-time priority. Of the "
-          "lateness, the kernel tells what was waiting for a processor that something else "
-          "had; the rest is the timer's or, in a virtual machine, the host's, and no priority "
-          "helps against it.\n"
-          "With --device the servo turns with a device, on a plane through the middle of its "
-          "workspace, and the round trips to it are timed: the device's hand is to be held.\n"
-          "With --wire servo and driver turn with an emulated Falcon, while a bare timer of the "
-          "same priority does with another. Every place that is felt is held against where the "
-          "emulated handle was; one that is older than it says ends the command with 1, as do a "
-          "fault that was not noticed and a period of the clock that is neither a tick nor missed.",
+          "Runs the servo's own clock without device or scene and reports how late its wake-ups "
+          "were. Run it under the load of your experiment. policy shows whether the system granted "
+          "real-time priority. The kernel reports the part of the latency spent waiting for a busy "
+          "processor; the rest comes from the timer or, in a virtual machine, from the host, and "
+          "does not depend on priority.\n"
+          "With --device the servo runs with a device, on a plane through the middle of its "
+          "workspace, and the round trips to it are timed: hold the device's handle.\n"
+          "With --emulated-falcon servo and driver run with an emulated Falcon, and a bare timer "
+          "of the same "
+          "priority with another. Every rendered position is compared with the emulated handle's; "
+          "one that is older than stated ends the command with 1, as do an undetected fault, a "
+          "fault "
+          "that is neither injected nor due to a delay of this machine, and a period that is "
+          "neither a tick nor counted as missed.",
       .examples = {"patina latency-test --seconds 60",
                    "patina latency-test --device falcon --seconds 20",
-                   "patina latency-test --wire --seconds 600 --load 2 --faults 5"},
+                   "patina latency-test --emulated-falcon --seconds 600 --load 2 --faults 5"},
       .keys = kLatencyTestKeys,
       .arguments =
           {{"--seconds", "T", "s", "5", "How long, up to 3600.",
-            inRange(1e-3, 3600, [options](double s) { options->seconds = s; })},
+            numberInto(1e-3, 3600, options->seconds)},
            {"--device", "NAME", "", "", "With this device, as the key device of a scene has it.",
             [options](const std::string& name) { options->device = (deviceNamed(name), name); }},
-           {"--wire", "", "", "", "With an emulated Falcon, at 1000 Hz.", into(options->wire)},
-           {"--load", "N", "threads", "0", "With --wire: that only take time.",
+           {"--emulated-falcon", "", "", "", "With an emulated Falcon, at 1000 Hz.",
+            into(options->wire)},
+           {"--load", "N", "threads", "0", "With --emulated-falcon: that only take time.",
             inRange(
                 0, 64, [options](double n) { options->on_wire.load = static_cast<int>(n); },
                 NumberKind::whole)},
-           {"--faults", "N", "", "0", "With --wire: of a thousand answers, so many are spoilt.",
+           {"--faults", "N", "", "0", "With --emulated-falcon: corrupted answers per thousand.",
             inRange(
                 0, 1000,
                 [options](double n) {
@@ -195,7 +208,7 @@ Command latencyTestCommand() {
                 },
                 NumberKind::whole)},
            {"--rate", "HZ", "Hz", "1000", "Wake-ups a second, 100 to 10000.",
-            inRange(100, 10000, [options](double hz) { options->rate = hz; })}},
+            numberInto(100, 10000, options->rate)}},
       .run = [options](Console& console) { return runLatencyTest(*options, console); }};
 }
 

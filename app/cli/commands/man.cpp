@@ -18,7 +18,7 @@ struct ManOptions {
   bool markdown = false;
 };
 
-// By the system's own reader of manual pages, or as --help where there is none.
+// Shows the page with the system's man, or as --help if there is none.
 int show(const std::string& page, const std::string& text, Console& console) {
   const int file = ::memfd_create("patina.1", 0);
   const auto size = static_cast<ssize_t>(page.size());
@@ -74,7 +74,7 @@ Command manCommand() {
           .examples = {"patina man feel", "patina man -o man/man1"},
           .keys = {},
           .arguments = {input(
-                            "COMMAND", "Whose page; without it the program's.",
+                            "COMMAND", "Command of the page; without it the program's.",
                             [options](const std::string& word) { options->command = word; },
                             Times::at_most_once),
                         writtenTo(options->folder, "-o,--output", "FOLDER",

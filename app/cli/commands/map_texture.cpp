@@ -3,6 +3,7 @@
 
 #include "acquisition/files/registered_file.h"
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/mesh_input.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/file_kind.h"
@@ -31,7 +32,7 @@ const Keys kMapKeys = {
     {"folded", "", "folded", "faces behind the centre of a bend, left without", Shown::if_any},
     {"ambiguous", "", "ambiguous", "faces between two parts of the path, left without",
      Shown::if_any},
-    {"stretched", "", "stretched", "faces that would be more than --most-stretch, left without",
+    {"stretched", "", "stretched", "faces that would be more than --max-stretch, left without",
      Shown::if_any},
     {"stretch",
      "",
@@ -54,7 +55,7 @@ int runMapTexture(const MapOptions& options, Console& console) {
   std::vector<std::string> warnings;
   const std::vector<PathOnMesh> strokes = readStrokes(options.path, options.heights, &warnings);
   for (const std::string& line : warnings) console.warn(line);
-  LaidTexture laid;
+  MappedTexture laid;
   try {
     laid = layScanTexture(scaled.mesh, strokes, options.lay, console.progress());
   } catch (const FileError&) {
@@ -64,7 +65,7 @@ int runMapTexture(const MapOptions& options, Console& console) {
   }
 
   for (TexturedFace& face : laid.faces)
-    for (Vec2& at : face.at) at /= scaled.scale;
+    for (Vec2& at : face.coords) at /= scaled.scale;
   const std::vector<TexturedFace> merged = laidOver(laid.faces, file.textured);
   writeTexturedObj(options.output, file.mesh, merged);
 
@@ -77,9 +78,9 @@ int runMapTexture(const MapOptions& options, Console& console) {
       .set("folded", laid.folded)
       .set("ambiguous", laid.ambiguous)
       .set("stretched", laid.stretched)
-      .set("stretch", Json::object().set("least", laid.least).set("most", laid.most),
-           rounded(laid.least) + " to " + rounded(laid.most))
-      .set("farthest", laid.farthest);
+      .set("stretch", Json::object().set("least", laid.min_stretch).set("most", laid.max_stretch),
+           rounded(laid.min_stretch) + " to " + rounded(laid.max_stretch))
+      .set("farthest", laid.max_distance);
   return console.report(report);
 }
 
@@ -90,15 +91,15 @@ Command mapTextureCommand() {
   LayOptions& lay = options->lay;
   return {
       .name = "map-texture",
-      .summary = "lay a texture onto a mesh along a path",
+      .summary = "map a texture to a mesh along a path",
       .description =
           "Gives the faces that the path runs over, and rings of their neighbours, coordinates: x "
           "is the way along the path, y the distance from it, positive to the left. They go into "
           "an OBJ as a line h TEXTURE x1 y1 x2 y2 x3 y3 a face, which other programs pass over. "
-          "The path is that of `patina register`, or any points on the mesh: a scan that nobody "
-          "made. Each stroke begins anew at x = 0.\n"
-          "Where MESH has coordinates already they stay, but for the faces that this path takes: "
-          "of textures that overlap the last one is felt.",
+          "The path is that of `patina register`, or any points on the mesh: a virtual scan. Each "
+          "stroke starts again at x = 0.\n"
+          "Existing coordinates of MESH stay, except on the faces of this path: where textures "
+          "overlap, the last one is used.",
       .examples =
           {"patina map-texture dinosaur.obj registered.csv -o textured.obj --heights heights.csv",
            "patina map-texture textured.obj other.csv -o both.obj --texture 2 --rings 3"},
@@ -107,24 +108,19 @@ Command mapTextureCommand() {
                     input("PATH", "Path on it.", into(options->path)),
                     outputTo(options->output, "TEXTURED.obj", "The mesh with coordinates."),
                     {"--texture", "ID", "", "1", "Number of the texture.",
-                     inRange(
-                         0, 1e9, [&lay](double id) { lay.texture = static_cast<std::int32_t>(id); },
-                         NumberKind::whole)},
+                     numberInto(0, 1e9, lay.texture, NumberKind::whole)},
                     {"--heights", "HEIGHTS.csv", "", "",
-                     "Of this path, by patina filter: what the texture was made of tells how far "
-                     "along each sample lies.",
+                     "Of this path, by patina filter: the texture's heights give the arc length of "
+                     "each sample.",
                      into(options->heights)},
                     {"--rings", "N", "", "2", "Of neighbours beyond the faces on the way.",
-                     inRange(
-                         0, 1000, [&lay](double rings) { lay.rings = static_cast<int>(rings); },
-                         NumberKind::whole)},
+                     numberInto(0, 1000, lay.rings, NumberKind::whole)},
                     {"--by-edge", "", "", "", "Neighbours share an edge, not a corner alone.",
                      [&lay](const std::string&) { lay.neighbours = Neighbours::by_edge; }},
-                    {"--most-stretch", "RATIO", "", "2",
+                    {"--max-stretch", "RATIO", "", "2",
                      "Faces whose coordinates are more are left out.",
-                     inRange(1, 100, [&lay](double most) { lay.most_stretch = most; })},
-                    {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",
-                     parsedInto(options->unit, parseMeshUnit)}},
+                     numberInto(1, 100, lay.max_stretch)},
+                    unitOfMesh(options->unit)},
       .run = [options](Console& console) { return runMapTexture(*options, console); }};
 }
 

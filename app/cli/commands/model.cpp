@@ -3,12 +3,13 @@
 #include <map>
 
 #include "app/cli/commands/commands.h"
-#include "app/cli/input/suggestion.h"
+#include "app/cli/framework/suggestion.h"
 #include "app/cli/output/mesh_output.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/surface/models.h"
+#include "geometry/io/mesh_in_unit.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
 #include "geometry/mesh/shapes.h"
@@ -17,7 +18,6 @@ namespace patina::cli {
 
 namespace {
 
-// Sizes by name: metres or counts.
 using Sizes = std::map<std::string, double>;
 
 struct Model {
@@ -73,8 +73,7 @@ const std::vector<Model>& models() {
   return list;
 }
 
-// Counts have a lower bound that keeps the model a closed surface, and an upper one that keeps it
-// in memory.
+// Counts have a lower bound that keeps the model closed, and an upper bound for memory.
 bool isCount(const std::string& key) {
   return key == "frequency" || key == "around" || key == "across" || key == "along" ||
          key == "cells" || key == "resolution";
@@ -84,7 +83,7 @@ struct ModelOptions {
   std::string name;
   std::filesystem::path output;
   MeshUnit unit = MeshUnit::mm;
-  Sizes sizes; // those given
+  Sizes sizes; // given sizes
 };
 
 const Model& modelNamed(const std::string& name) {
@@ -150,20 +149,22 @@ Command modelCommand() {
       users[key] += (users[key].empty() ? "" : ", ") + model.name + " " +
                     (isCount(key) ? formatNumber(value) : formatLength(value));
   }
-  Command command{.name = "model",
-                  .summary = "write one of the program's own test objects as a mesh",
-                  .description = "NAME is one of: " + joined(list, "; ") +
-                                 ".\nSizes that the model does not have are an error. The same "
-                                 "words give the same mesh.",
-                  .examples = {"patina model vase -o vase.ply --height 120mm --wall 2mm",
-                               "patina model sphere -o sphere.obj --radius 30mm --frequency 71"},
-                  .keys = kModelKeys,
-                  .arguments = {input("NAME", "Which model.",
-                                      [options](const std::string& text) {
-                                        options->name = modelNamed(text).name;
-                                      }),
-                                outputTo(options->output, "MESH", "Mesh file (.obj .ply .stl).")},
-                  .run = [options](Console& console) { return runModel(*options, console); }};
+  Command command{
+      .name = "model",
+      .summary = "write one of the program's own test objects as a mesh",
+      .description =
+          "NAME is one of: " + joined(list, "; ") +
+          ".\n"
+          "Sizes that the model does not have are an error. The same options give the same mesh.",
+      .examples = {"patina model vase -o vase.ply --height 120mm --wall 2mm",
+                   "patina model sphere -o sphere.obj --radius 30mm --frequency 71"},
+      .keys = kModelKeys,
+      .arguments = {input("NAME", "Which model.",
+                          [options](const std::string& text) {
+                            options->name = modelNamed(text).name;
+                          }),
+                    outputTo(options->output, "MESH", "Mesh file (.obj .ply .stl).")},
+      .run = [options](Console& console) { return runModel(*options, console); }};
   for (const auto& [key, text] : users)
     command.arguments.push_back(sizeArgument(key, text, options->sizes));
   command.arguments.push_back(unitOfOutput(options->unit));

@@ -1,30 +1,82 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "app/cli/commands/commands.h"
+#include "app/cli/framework/console.h"
 #include "app/cli/input/scene_options.h"
-#include "app/cli/input/stroke_script.h"
 #include "app/cli/input/workspace_place.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/numbers.h"
 #include "core/percentiles.h"
-#include "session/build/compile_warnings.h"
-#include "session/build/session.h"
+#include "scene/stroke.h"
+#include "session/compile/compile_warnings.h"
 #include "session/edit/editor.h"
-#include "session/store/workspace_link.h"
+#include "session/open/session.h"
+#include "session/store/journal_fold.h"
+#include "session/store/workspace_storage.h"
 
 namespace patina::cli {
-
 namespace {
+
+// Strokes from a file, for patina paint.
+struct ScriptStroke {
+  Stroke stroke;
+  std::string where; // "hand.json: stroke 3"
+};
+
+std::vector<Stroke> strokesOfJournal(const std::string& text, const std::string& name,
+                                     Console& console) {
+  const JournalText journal = parseJournal(text);
+  if (journal.damaged_line) throw FileError(name, journal.damaged_line, journal.damage);
+  if (journal.torn) console.warn(name + ": its last record was not finished and is left out");
+  const FoldedJournal fold = folded(journal.events, name);
+  std::vector<Stroke> strokes;
+  const std::size_t heading = journal.from.empty() ? 0 : 1;
+  for (std::size_t i = 0; i < fold.position; ++i) {
+    const auto* stroke = std::get_if<Stroke>(fold.steps[i].event);
+    if (!stroke) continue;
+    try {
+      requireSamples(*stroke);
+    } catch (const Error& error) {
+      throw FileError(name, fold.steps[i].number + heading, error.what());
+    }
+    strokes.push_back(*stroke);
+  }
+  if (const std::size_t others = fold.position - strokes.size())
+    console.warn(name + ": " + formatCount(others) + (others == 1 ? " edit is" : " edits are") +
+                 " no stroke and left out");
+  return strokes;
+}
+
+// Reads a strokes file (version 1) or, for .jsonl, the strokes that are still applied at the end of
+// a workspace's journal; other edits are skipped with a warning. Throws FileError.
+std::vector<ScriptStroke> readScript(const std::filesystem::path& path, Console& console) {
+  const std::string name = path.string();
+  const std::string text = readFile(path);
+  const bool journal =
+      path.extension() == ".jsonl" || (isStandardStream(path) && text.starts_with(R"({"n":)"));
+  std::vector<Stroke> strokes =
+      journal ? strokesOfJournal(text, name, console) : parseStrokes(text, name);
+  std::vector<ScriptStroke> script;
+  for (Stroke& stroke : strokes) {
+    std::string where = name + ": stroke " + std::to_string(script.size() + 1);
+    script.push_back({std::move(stroke), std::move(where)});
+  }
+  return script;
+}
 
 struct PaintOptions {
   std::filesystem::path input, output;
   std::vector<std::filesystem::path> strokes;
-  std::optional<Seed> seed; // of all strokes, whatever they say
+  std::optional<DabAnchor> anchor; // replaces that of all strokes
   OpenOptions open;
 };
 
@@ -51,14 +103,14 @@ bool paintsMaterial(const Brush& brush) {
                      [](const BrushLayer& layer) { return channelOf(layer.tool).has_value(); });
 }
 
-// A brush reaches all 8 nodes of a cell only from sqrt(3) voxels on (K22).
+// A brush covers all 8 nodes of a cell only from sqrt(3) voxels on (K22).
 void warnOfVoxel(const ScriptStroke& script, double voxel, Console& console) {
   const Brush& brush = script.stroke.brush;
   const double whole = std::sqrt(3.0) * voxel;
   if (!paintsMaterial(brush) || brush.radius_per_force != 0 || brush.radius >= whole) return;
   console.warn(script.where + ": a radius of " + formatLength(brush.radius) +
-               " does not fill a cell of " + formatLength(voxel) +
-               ": values are felt diluted; from " + formatLength(whole) + " on they are not");
+               " does not fill a cell of " + formatLength(voxel) + ": values are diluted; from " +
+               formatLength(whole) + " on they are not");
 }
 
 void warnOfNothing(const ScriptStroke& script, const PaintReport& report, double voxel,
@@ -109,19 +161,6 @@ void paintAll(Editor& editor, const std::vector<ScriptStroke>& script, PaintRun&
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// What stands in the journal already stays; the next command would paint it anew.
-void keepWhatIsDone(Editor& editor, const PaintRun& run, const std::filesystem::path& folder,
-                    Console& console) {
-  if (run.edits == 0) return;
-  try {
-    editor.save();
-  } catch (const Error&) { // the first error is the one to tell
-  }
-  console.warn(formatCount(run.edits) + (run.edits == 1 ? " stroke is" : " strokes are") +
-               " in the workspace: patina undo " + folder.string() + " --steps " +
-               std::to_string(run.edits) + " takes them back");
-}
-
 void requireHeight(const Scene& scene, const std::vector<ScriptStroke>& script) {
   if (scene.relief.height != 0) return;
   for (const ScriptStroke& one : script)
@@ -168,7 +207,7 @@ int runPaint(const PaintOptions& options, Console& console) {
   std::vector<ScriptStroke> script;
   for (const std::filesystem::path& path : options.strokes)
     for (ScriptStroke& one : readScript(path, console)) {
-      if (options.seed) one.stroke.brush.seed = *options.seed;
+      if (options.anchor) one.stroke.brush.anchor = *options.anchor;
       script.push_back(std::move(one));
     }
   const std::filesystem::path input = inputPath(options.input);
@@ -177,8 +216,9 @@ int runPaint(const PaintOptions& options, Console& console) {
   PaintRun run;
   const auto listener = [&run](const EditorNotice& notice) { count(run, notice); };
   std::unique_ptr<Editor> editor;
+  const bool repeated = !in_place && isRepeatedIn(options.output, console);
   if (std::filesystem::is_directory(input)) {
-    const Editor::OpenSpec spec{.own = in_place};
+    const Editor::OpenSpec spec{.own = in_place, .all_or_none = true, .intent = console.intent};
     editor = Editor::open(workspaceFolder(input), spec, console.progress(), listener);
     for (const std::string& note : editor->notes()) console.warn(note);
     for (const SceneObject& object : editor->scene().objects)
@@ -189,16 +229,17 @@ int runPaint(const PaintOptions& options, Console& console) {
   }
   for (const std::string& line : compileWarnings(*editor->compiled())) console.warn(line);
   requireHeight(editor->scene(), script);
-  try {
-    paintAll(*editor, script, run, console);
-  } catch (...) {
-    if (in_place) keepWhatIsDone(*editor, run, input, console);
-    throw;
+  if (repeated ||
+      (in_place && editor->isRepeated() && isRepeated(options.output, {console.intent}, console)))
+    return report(options, *editor, script.size(), run, console);
+  paintAll(*editor, script, run, console);
+  if (!in_place) {
+    editor->saveAs(options.output, console.intent);
+    console.markCommitted();
+  } else if (run.edits > 0) {
+    console.commit([&] { editor->commit(); });
+    saveJournaled(options.output, console, [&] { editor->save(); });
   }
-  if (in_place)
-    editor->save();
-  else
-    editor->saveAs(options.output);
   return report(options, *editor, script.size(), run, console);
 }
 
@@ -214,15 +255,14 @@ Command paintCommand() {
           "workspace (its journal-1.jsonl or the like), whose strokes that are not undone are "
           "painted again. The same strokes on the same scene give the same bits.\n"
           "With an output of its own the input stays as it is, byte for byte, and the output gets "
-          "the whole history. With the input itself as output every stroke is on disk as soon as "
-          "it is painted: what was painted before Ctrl-C, or before a stroke that fails, stays, "
-          "and patina undo takes it back. A stroke that touches nothing is warned of and is no "
-          "edit.\n"
+          "the whole history. With the input itself as output all strokes are added together "
+          "at the end, or none after Ctrl-C or an error. A stroke that changes nothing gives a "
+          "warning and is not an edit.\n"
           "A stroke may carry several layers, such as colour, stiffness and relief at once; it is "
           "one edit. Its brush starts from the surface's nearest point, or with seed segment from "
-          "where the way from the tip goes through the surface.\n"
+          "the point where the ray from the tip hits the surface.\n"
           "A radius below 1.73 voxels reaches some nodes of a cell only: painted stiffness and "
-          "friction are then felt diluted.",
+          "friction are then diluted.",
       .examples = {"patina paint cup --strokes glaze.json -o painted",
                    "patina paint cup --strokes painted/journal-1.jsonl -o cup",
                    "patina paint cup.ply --strokes glaze.json --strokes grip.json -o painted"},
@@ -230,11 +270,12 @@ Command paintCommand() {
       .arguments = {sceneInput(options->input, "WORKSPACE"),
                     {"--strokes", "STROKES.json", "", "", "What to paint.", into(options->strokes),
                      Times::at_least_once},
-                    {"--seed", "nearest|segment", "", "",
-                     "Where brushes start, whatever the strokes say.",
-                     parsedInto(options->seed, parseSeed)},
+                    {"--dab-anchor", "nearest|segment", "", "",
+                     "Where brushes start; overrides the strokes.",
+                     parsedInto(options->anchor, parseDabAnchor)},
                     outputTo(options->output, "WORKSPACE", "The folder, which may be the input.")},
-      .run = [options](Console& console) { return runPaint(*options, console); }};
+      .run = [options](Console& console) { return runPaint(*options, console); },
+      .changes_workspace = true};
   addOpenOptions(command, options->open);
   return command;
 }

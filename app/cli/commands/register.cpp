@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "acquisition/files/registered_file.h"
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/mesh_input.h"
 #include "app/cli/output/reports.h"
@@ -13,7 +13,8 @@
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
 #include "geometry/mesh/pose_values.h"
-#include "scan/register_scans.h"
+#include "scan/scan_advice.h"
+#include "scan/scan_files.h"
 
 namespace patina::cli {
 
@@ -22,11 +23,11 @@ namespace {
 using Method = ScanRegistrationOptions::Method;
 
 struct RegisterOptions {
-  std::filesystem::path mesh, path, output, report, initial, truth;
+  std::filesystem::path mesh, path, output, report, initial, truth, next_stroke;
   std::vector<std::filesystem::path> also;
   std::optional<PoseValues> align;
   MeshUnit unit = MeshUnit::mm;
-  double tip_radius = 0;
+  std::optional<double> tip_radius;
   ScanRegistrationOptions fit;
 };
 
@@ -41,17 +42,17 @@ const Keys kRegisterKeys = {
     {"deviation",
      "",
      "uncertainty",
-     "one standard deviation of the pose, rms of the axes; of what is seen, errors that "
-     "neighbouring "
-     "samples share counted once",
+     "one standard deviation: of the path's points by all observable errors of the pose together, "
+     "and of the pose itself, rms of the axes; errors that neighbouring samples share are counted "
+     "once",
      Shown::if_any,
-     {{"turn", "rad", ""}, {"shift", "m", ""}}},
+     {{"points", "m", ""}, {"turn", "rad", ""}, {"shift", "m", ""}}},
     {"unique", "", "unique",
-     "no other place on the mesh fits as well, and no motion is free; absent: nobody looked"},
+     "no other place on the mesh fits as well, and no motion is free; absent: not searched"},
     {"rivals",
      "",
      "other places",
-     "that fit as well: where, and how far from this one the samples lie there",
+     "other poses that fit as well, and how far the samples move to them",
      Shown::never,
      {{"mesh_from_scan", "", ""},
       {"rms", "m", ""},
@@ -64,9 +65,21 @@ const Keys kRegisterKeys = {
      "motions that the surface does not see, left where they were",
      Shown::if_any,
      {{"axis", "", ""}, {"kind", "", ""}, {"through", "m", ""}, {"pitch", "m", ""}}},
+    {"scans",
+     "",
+     "scans",
+     "of several, each by its own samples",
+     Shown::if_any,
+     {{"path", "", ""},
+      {"rms", "m", ""},
+      {"count", "", ""},
+      {"compliance", "m/N", ""},
+      {"compliance_deviation", "m/N", ""}}},
     {"converged", "", "converged", "residual and pose are at rest, and as small as the noise"},
-    {"compliance", "m/N", "gives way", "the surface, to a newton: told, or found by the forces",
-     Shown::if_any},
+    {"compliance", "m/N", "gives way",
+     "the surface, to a newton: given, or estimated from the forces", Shown::if_any},
+    {"compliance_deviation", "m/N", "gives way, deviation", "one standard deviation; 0 if given",
+     Shown::never},
     {"tip",
      "m",
      "tip",
@@ -76,15 +89,23 @@ const Keys kRegisterKeys = {
     {"clock",
      "s",
      "clock",
-     "what the probe felt was at the path's place so much later",
+     "delay of the probe's samples after the path",
      Shown::if_any,
      {{"added", "s", ""}, {"deviation", "s", ""}}},
-    {"frozen", "", "frozen", "what the distances do not tell, left as it was", Shown::if_any},
+    {"frozen", "", "frozen", "parameters that the distances do not determine, left unchanged",
+     Shown::if_any},
     {"error", "m", "error", "against the truth: of the samples, rms", Shown::if_any},
+    {"known",
+     "",
+     "known",
+     "how well the scan determines the pose, as the mesh's displacement, and the heights of which "
+     "share of the area it determines to 0.2 mm; and after the next stroke",
+     Shown::if_any,
+     {{"pose", "m", ""}, {"area", "", ""}, {"pose_after", "m", ""}, {"area_after", "", ""}}},
     {"mesh_from_scan", "", "mesh from scan", "4 x 4"},
     {"mean_distance", "m", "mean distance"},
     {"roughness", "m", "roughness",
-     "of the surface: what of rms the samples' noise leaves unexplained", Shown::if_any},
+     "of the surface: the part of rms that exceeds the samples' noise", Shown::if_any},
     {"noise", "m", "noise", "that was expected of the samples", Shown::if_any},
     {"together", "", "worth one", "so many samples in a row, as their errors go together",
      Shown::if_any},
@@ -99,7 +120,7 @@ const Keys kRegisterKeys = {
     {"starts", "", "starts", "poses that were fitted from", Shown::if_any},
     {"seconds", "s", "registered in"}};
 
-// X,Y,Z as lengths, then degrees about the fixed axes x, y and z (A09).
+// Parses X,Y,Z as lengths, then degrees about the fixed axes x, y and z (A09).
 PoseValues parseAlignment(const std::string& text) {
   std::size_t third = 0;
   for (int commas = 0; commas < 3 && third != std::string::npos; ++commas)
@@ -115,10 +136,10 @@ PoseValues parseAlignment(const std::string& text) {
 }
 
 Method parseMethod(const std::string& word) {
-  if (word == "distance") return Method::distance;
-  if (word == "loop") return Method::loop;
-  if (word == "literal") return Method::literal;
-  throw Error("'" + word + "' is none of distance, loop, literal");
+  if (word == "point-to-surface" || word == "distance") return Method::distance;
+  if (word == "icp" || word == "loop") return Method::loop;
+  if (word == "icp-affine" || word == "literal") return Method::literal;
+  throw Error("'" + word + "' is none of point-to-surface, icp, icp-affine");
 }
 
 void addJoint(const JointFit& joint, Report& report) {
@@ -137,44 +158,71 @@ void addJoint(const JointFit& joint, Report& report) {
   report.set("tip", tip, tip_words).set("clock", clock, clock_words);
   Json list = Json::array();
   std::string words;
-  for (const std::string& each : joint.frozen) {
+  for (const std::string& each : joint.unobservable_parameters) {
     list.push(each);
     words += (words.empty() ? "" : "; ") + each;
   }
   report.set("frozen", list, words);
 }
 
-Json freeJson(const std::vector<FreeMotion>& motions) {
+Json freeJson(const std::vector<UnobservableMotion>& motions) {
   Json list = Json::array();
-  for (const FreeMotion& motion : motions) {
-    const bool turns = motion.kind == FreeMotion::Kind::turn;
+  for (const UnobservableMotion& motion : motions) {
+    const bool turns = motion.kind == UnobservableMotion::Kind::rotation;
     Json json = Json::object();
     json.set("axis", vectorJson(motion.axis)).set("kind", turns ? "turn" : "slide");
-    if (turns) json.set("through", vectorJson(motion.through)).set("pitch", motion.pitch);
+    if (turns) json.set("through", vectorJson(motion.axis_point)).set("pitch", motion.pitch);
     list.push(json);
   }
   return list;
 }
 
-Json rivalsJson(const std::vector<Rival>& rivals) {
+Json alternativesJson(const std::vector<AlternativePose>& alternatives) {
   Json list = Json::array();
-  for (const Rival& rival : rivals)
+  for (const AlternativePose& other : alternatives)
     list.push(Json::object()
-                  .set("mesh_from_scan", poseJson(rival.mesh_from_path))
-                  .set("rms", rival.rms)
-                  .set("count", rival.counts)
-                  .set("away", rival.away)
-                  .set("turn", rival.turn));
+                  .set("mesh_from_scan", poseJson(other.mesh_from_path))
+                  .set("rms", other.rms)
+                  .set("count", other.inliers)
+                  .set("away", other.displacement)
+                  .set("turn", other.rotation));
   return list;
+}
+
+// A compliance that was given has no deviation.
+std::string complianceWords(const Registration& found) {
+  const double deviation = found.compliance_deviations[0];
+  return formatLength(found.compliances[0]) +
+         (deviation > 0 ? " ± " + formatLength(deviation) : "") + " a newton";
+}
+
+// One row a scan, where there are several.
+void addScans(const RegisteredScans& scans, const std::vector<std::string>& names, Report& report) {
+  if (names.size() < 2) return;
+  Json list = Json::array();
+  std::string words;
+  for (std::size_t s = 0; s < names.size(); ++s) {
+    const Registration own = scans.of(s);
+    list.push(Json::object()
+                  .set("path", names[s])
+                  .set("rms", own.rms)
+                  .set("count", static_cast<std::size_t>(
+                                    std::count(own.inliers.begin(), own.inliers.end(), true)))
+                  .set("compliance", own.compliances[0])
+                  .set("compliance_deviation", own.compliance_deviations[0]));
+    words += (s > 0 ? "; " : "") + names[s] + ": " + formatLength(own.rms) + " rms, gives way " +
+             complianceWords(own);
+  }
+  report.set("scans", list, words);
 }
 
 Report reportOf(const RegisteredScans& scans, const ScanRegistrationOptions& options,
                 double seconds, const std::optional<double>& error) {
   const Registration& found = scans.registration;
   Report report(kRegisterKeys);
-  const std::size_t all = found.counts.size();
+  const std::size_t all = found.inliers.size();
   const auto count =
-      static_cast<std::size_t>(std::count(found.counts.begin(), found.counts.end(), true));
+      static_cast<std::size_t>(std::count(found.inliers.begin(), found.inliers.end(), true));
   report.set("rms", found.rms, formatLength(found.rms) + " rms, of the samples that count");
   report.set("samples", Json::object().set("all", all).set("count", count),
              formatCount(all) + ", of which " +
@@ -182,24 +230,27 @@ Report reportOf(const RegisteredScans& scans, const ScanRegistrationOptions& opt
   if (options.method == Method::distance) {
     const double turns = std::sqrt(found.covariance.topLeftCorner<3, 3>().trace() / 3),
                  shifts = std::sqrt(found.covariance.bottomRightCorner<3, 3>().trace() / 3);
-    report.set("deviation", Json::object().set("turn", turns).set("shift", shifts),
-               formatLength(shifts) + ", " + rounded(turns * 180 / std::numbers::pi) +
-                   " degrees (1 sigma)");
+    const double points = pathDeviation(found);
+    report.set(
+        "deviation", Json::object().set("points", points).set("turn", turns).set("shift", shifts),
+        formatLength(points) + " of the path's points (1 sigma); an axis of the pose " +
+            formatLength(shifts) + ", " + rounded(turns * 180 / std::numbers::pi) + " degrees");
     std::string words;
-    for (const FreeMotion& motion : found.free)
+    for (const UnobservableMotion& motion : found.free)
       words += (words.empty() ? "" : "; ") + inWords(motion);
-    if (found.rivals) {
-      const bool alone = found.rivals->empty();
+    if (found.alternatives) {
+      const bool alone = found.alternatives->empty();
       report.set("unique", alone && found.free.empty(),
-                 !alone          ? "no: " + inWords(*found.rivals)
+                 !alone          ? "no: " + inWords(*found.alternatives)
                  : words.empty() ? "yes"
                                  : "no: " + words);
-      report.set("rivals", rivalsJson(*found.rivals));
+      report.set("rivals", alternativesJson(*found.alternatives));
     }
     report.set("unobservable", freeJson(found.free), words);
-    report.set("compliance", found.compliances[0],
-               formatLength(found.compliances[0]) + " a newton");
-    report.set("together", found.together, rounded(found.together) + " samples in a row");
+    report.set("compliance", found.compliances[0], complianceWords(found));
+    report.set("compliance_deviation", found.compliance_deviations[0]);
+    report.set("together", found.correlation_length,
+               rounded(found.correlation_length) + " samples in a row");
     report.set("evaluations", found.evaluations)
         .set("starts", static_cast<std::size_t>(found.starts));
   }
@@ -214,10 +265,20 @@ Report reportOf(const RegisteredScans& scans, const ScanRegistrationOptions& opt
     report.set("roughness", found.roughness);
   if (found.noise > 0) report.set("noise", scans.noise);
   report.set("last_step",
-             Json::object().set("turn", found.last_turn).set("shift", found.last_shift),
-             rounded(1e3 * found.last_turn) + " mrad, " + formatLength(found.last_shift));
+             Json::object().set("turn", found.last_rotation).set("shift", found.last_translation),
+             rounded(1e3 * found.last_rotation) + " mrad, " + formatLength(found.last_translation));
   report.set("iterations", static_cast<std::size_t>(found.iterations));
   return report.set("seconds", seconds);
+}
+
+// Writes the next stroke; there is none if the scan is complete.
+void addAdvice(const ScanAdvice& advice, const RegisterOptions& options, Report& report) {
+  Json known = Json::object().set("pose", advice.known.pose).set("area", advice.known.area);
+  if (advice.stroke) {
+    known.set("pose_after", advice.stroke->pose).set("area_after", advice.stroke->area);
+    writeStroke(options.next_stroke, *advice.stroke);
+  }
+  report.set("known", known, inWords(advice));
 }
 
 int runRegister(RegisterOptions options, Console& console) {
@@ -230,34 +291,48 @@ int runRegister(RegisterOptions options, Console& console) {
     if (areOne(options.report, options.output))
       throw FileError(options.report.string(), 0, "is the path's file too");
   }
+  if (!options.next_stroke.empty()) {
+    requireWritable(options.next_stroke, inputs, FileKind::table);
+    if (areOne(options.next_stroke, options.output) || areOne(options.next_stroke, options.report))
+      throw FileError(options.next_stroke.string(), 0, "is another output's file too");
+  }
   if (options.align && !options.initial.empty())
-    throw Error("--align: --initial is a first guess too; one of them");
+    throw Error("--initial-values: --initial is a first guess too; one of them");
   const ScanRegistrationOptions& fit = options.fit;
-  if (fit.method != Method::distance &&
-      (options.tip_radius > 0 || fit.compliance || fit.noise || !fit.search || fit.refine))
-    throw Error("--method: --tip-radius, --compliance, --noise, --no-search and --refine are of "
-                "'distance'");
+  std::vector<std::filesystem::path> files = {options.path};
+  files.insert(files.end(), options.also.begin(), options.also.end());
+  double tip_radius = options.tip_radius.value_or(0);
+  if (!options.tip_radius && fit.method == Method::distance) {
+    std::vector<std::filesystem::path> folders;
+    for (const std::filesystem::path& file : files) folders.push_back(file.parent_path());
+    tip_radius = tipRadiusOf(folders);
+  }
+  if (fit.method != Method::distance) {
+    if (tip_radius > 0 || fit.compliance || fit.noise || !fit.search || fit.refine ||
+        !options.next_stroke.empty())
+      throw Error("--method: --tip-radius, --compliance, --noise, --no-search, --refine and "
+                  "--next-stroke are of 'distance'");
+    console.warnOfNoEffect({"--roughness", "--outliers"}, "unless --method is distance");
+  }
   ScaledMesh scaled = readScaledMesh(options.mesh, options.unit, console);
   TriangleMesh mesh = cleaned(std::move(scaled.mesh)).mesh;
   if (mesh.triangles.empty()) throw FileError(options.mesh.string(), 0, "has no triangle");
   std::vector<std::string> warnings;
-  std::vector<std::vector<PathSample>> paths = {readPath(options.path, &warnings)};
-  for (const std::filesystem::path& file : options.also) paths.push_back(readPath(file, &warnings));
+  std::vector<std::vector<PathSample>> paths;
+  for (const std::filesystem::path& file : files) {
+    paths.push_back(readPath(file, &warnings));
+    options.fit.names.push_back(file.string());
+  }
   for (const std::string& line : warnings) console.warn(line);
   const std::optional<Pose> truth =
       options.truth.empty() ? std::nullopt
                             : std::optional(readPoseAt(options.truth, "mesh_from_camera"));
   if (options.align) options.fit.guess = poseOf(*options.align);
   if (!options.initial.empty()) options.fit.guess = readPose(options.initial);
-  const SurfaceTarget target(std::move(mesh), options.tip_radius, true);
+  const SurfaceTarget target(std::move(mesh), tip_radius, true);
 
   const auto begin = std::chrono::steady_clock::now();
-  RegisteredScans scans;
-  try {
-    scans = registerScans(target, std::move(paths), fit, console.progress());
-  } catch (const Error& error) {
-    throw FileError(options.path.string(), 0, error.what());
-  }
+  const RegisteredScans scans = registerScans(target, std::move(paths), fit, console.progress());
   const Registration& found = scans.registration;
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   console.progress().throwIfCancelled();
@@ -273,50 +348,41 @@ int runRegister(RegisterOptions options, Console& console) {
     error = std::sqrt(squares / samples);
   }
   Report report = reportOf(scans, fit, taken.count(), error);
+  addScans(scans, fit.names, report);
   if (scans.joint) addJoint(*scans.joint, report);
-  for (const std::string& line : scans.warnings) console.warn(options.path.string() + ": " + line);
-  writeRegisteredPath(options.output, scans.paths[0], scans.of(0));
-  if (!options.report.empty())
+  if (!options.next_stroke.empty()) addAdvice(adviceFor(target, scans), options, report);
+  if (!options.report.empty()) // first: the path completes the command
     writeFileAtomically(options.report, console.published(report).dump() + "\n");
-  for (const std::string& line : scans.doubts) console.warn(options.mesh.string() + ": " + line);
-  if (!found.converged)
-    console.warn(options.path.string() + ": no pose was found at which it lies on the mesh as its "
-                                         "noise lets expect");
-  for (const FreeMotion& motion : found.free)
-    console.warn(options.path.string() + ": " + inWords(motion) +
-                 ": the mesh does not say where along that it lies");
-  if (found.rivals && !found.rivals->empty())
-    console.warn(options.path.string() + ": its place is not unique: " + inWords(*found.rivals) +
-                 "; scan more of the body, add a scan (--also), or, where you know about where it "
-                 "lies, --initial with --no-search");
-  return console.report(report, isDoubtful(found) ? kNotSolved : kDone);
+  writeRegisteredPath(options.output, scans.paths[0], scans.of(0));
+  for (const std::string& line : warningsOf(scans, options.mesh.string())) console.warn(line);
+  return console.report(report, isUnreliable(found) ? kNotSolved : kDone);
 }
 
 } // namespace
 
 Command registerCommand() {
   auto options = std::make_shared<RegisterOptions>();
-  const auto length = [](double& target) {
-    return inRange(
-        0, 1, [&target](double value) { target = value; }, NumberKind::length);
-  };
   return {
       .name = "register",
-      .summary = "a scan path finds its place on a mesh",
+      .summary = "register a scan path to a mesh",
       .description =
-          "Turns and shifts PATH.csv (of `patina filter`) so that it lies on MESH, and writes it "
-          "in "
+          "Finds the pose at which PATH.csv (of `patina filter`) lies on MESH, and writes it in "
           "the mesh's frame with the face and barycentric coordinates of each sample. Samples that "
           "do not fit are left out; only those in contact take part.\n"
-          "distance: Gauss-Newton on the distances; where the fit from --initial is not as good as "
-          "the path's sigma lets expect, many poses about it are tried. loop: nearest points and a "
-          "fit of points onto points, in turns, as Andrews and Lang have it (2007); literal: its 4 "
-          "x 4 matrix by least squares.\n"
-          "Motions that the surface does not see are named and left where they were. Other places "
-          "all over the mesh that fit as well are looked for, and how far the surface yields to "
-          "the forces is found. --refine fits pose, tip and clock together, from there on: what a "
-          "wrong calibration explains is not left to the pose. Exit code 1 where no pose explains "
-          "the path, or several do.",
+          "point-to-surface: Gauss-Newton on the distances; if the fit from --initial is worse "
+          "than "
+          "the path's sigma allows, many poses near it are tried. icp: iterated closest points "
+          "with "
+          "a rigid fit (Besl and McKay 1992), as in Andrews and Lang (2007). icp-affine: the same "
+          "with their 4 x 4 matrix by least squares.\n"
+          "Motions that the surface does not determine are reported and left unchanged. Other "
+          "poses on the mesh that fit as well are searched, and the surface's compliance is "
+          "estimated from the forces. --refine then fits pose, tip and clock together, so that "
+          "calibration errors do not bias the pose. --next-stroke writes the points of the stroke "
+          "over the mesh that would most reduce the expected deviation of the pose and the area "
+          "whose heights are not known yet; no file if pose (0.1 mm) and heights (0.2 mm over 95 % "
+          "of the area) are. Exit code 1 if no pose fits the path, or "
+          "several do.",
       .examples = {"patina register dinosaur.obj path.csv -o registered.csv --report r.json",
                    "patina register plate.obj path.csv -o r.csv --initial pose.txt --tip-radius "
                    "0.5mm --json"},
@@ -325,42 +391,39 @@ Command registerCommand() {
           {input("MESH", "Mesh.", into(options->mesh)),
            input("PATH", "Scan path.", into(options->path)),
            outputTo(options->output, "REGISTERED.csv", "The path on the mesh."),
-           {"--also", "PATH.csv", "", "",
+           {"--with", "PATH.csv", "", "",
             "Another scan in the same camera's frame, registered with it; its pose is the same.",
             into(options->also), Times::any},
            writtenTo(options->report, "--report", "R.json", "The report as a file."),
+           writtenTo(options->next_stroke, "--next-stroke", "STROKE.csv",
+                     "Where to scan next: the stroke that would tell most of pose and heights."),
            {"--initial", "T.txt", "", "middle on middle", "First guess of mesh_from_scan, 4 x 4.",
             into(options->initial)},
-           {"--align", "X,Y,Z,A,B,C", "", "",
+           {"--initial-values", "X,Y,Z,A,B,C", "", "",
             "First guess by hand: a shift [m] or as 1mm, then degrees about the fixed axes x, y, "
             "z.",
-            [options](const std::string& word) { options->align = parseAlignment(word); }},
-           {"--method", "distance|loop|literal", "", "distance", "How it is found.",
-            parsedInto(options->fit.method, parseMethod)},
-           {"--tip-radius", "LENGTH", "m", "0", "Of the probe: its middle stays that far off.",
-            length(options->tip_radius)},
+            parsedInto(options->align, parseAlignment)},
+           {"--method", "point-to-surface|icp|icp-affine", "", "point-to-surface",
+            "How the pose is found.", parsedInto(options->fit.method, parseMethod)},
+           tipRadius(options->tip_radius, "that of a rig.json beside PATH"),
            {"--compliance", "M_PER_N", "m/N", "found by the forces",
-            "How far the surface yields to a newton.",
-            inRange(0, 1, [options](double c) { options->fit.compliance = c; })},
+            "How far the surface yields to a newton.", numberInto(0, 1, options->fit.compliance)},
            {"--noise", "LENGTH", "m", "the path's median sigma", "Deviation of the samples.",
-            inRange(
-                1e-9, 1, [options](double n) { options->fit.noise = n; }, NumberKind::length)},
+            numberInto(1e-9, 1, options->fit.noise, NumberKind::length)},
            {"--roughness", "LENGTH", "m", "0.2mm",
             "The most that the surface's own relief may add to that.",
-            inRange(
-                0, 1, [options](double r) { options->fit.roughness = r; }, NumberKind::length)},
+            numberInto(0, 1, options->fit.roughness, NumberKind::length)},
            {"--outliers", "SHARE", "", "0.2",
             "Of the samples, as many as may lie elsewhere than on the mesh.",
-            inRange(0, 0.6, [options](double share) { options->fit.outliers = share; })},
+            numberInto(0, 0.6, options->fit.outliers)},
            {"--refine", "", "", "", "Also the tip's place in the probe and the clocks' offset.",
             into(options->fit.refine)},
            {"--no-search", "", "", "",
-            "Fit from the first guess alone, and look for no other place.",
+            "Fit from the first guess alone, without a search for other poses.",
             [options](const std::string&) { options->fit.search = false; }},
            {"--truth", "TRUTH.json", "", "", "Of a simulated scan, to compare with.",
             into(options->truth)},
-           {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",
-            parsedInto(options->unit, parseMeshUnit)}},
+           unitOfMesh(options->unit)},
       .run = [options](Console& console) { return runRegister(*options, console); }};
 }
 

@@ -9,22 +9,28 @@
 #include "core/numbers.h"
 #include "geometry/tree/triangle_tree.h"
 #include "haptics/servo/feel.h"
-#include "session/build/session.h"
+#include "session/open/session.h"
+#include "visualization/export/export_files.h"
 #include "visualization/layers/stability_layer.h"
 #include "visualization/view/display.h"
-#include "visualization/view/picture.h"
+#include "visualization/view/figure_file.h"
+#include "visualization/view/video.h"
 
 namespace patina::cli {
 
 namespace {
 
 struct RenderOptions {
-  std::filesystem::path input, output;
+  std::filesystem::path input, output, replay;
   std::set<Layer> layers = {Layer::mesh, Layer::color};
   ViewPreset view = ViewPreset::iso;
-  PictureSize size;
+  Figure figure;
+  FigureWidth width;
+  bool sized = false; // --width was given
+  std::optional<SlicePosition> slice;
   std::optional<Vec3> tip;
   std::optional<ValueRange> range;
+  ColorScales colors;
   SceneOptions scene;
 };
 
@@ -33,24 +39,36 @@ const Keys kRenderKeys = {
     {"layers", "", "layers"},
     {"width", "", "width", "", Shown::never},
     {"height", "", "height", "", Shown::never},
+    {"dpi", "1/inch", "resolution", "pixels per inch, with --width or --dpi", Shown::if_any},
+    {"background", "", "background", "", Shown::never},
+    {"frames", "", "frames", "of a video", Shown::if_any},
     {"view", "", "view", "", Shown::never},
     {"stability", "", "K*/K where it is shown", "", Shown::always, stabilityKeys()},
+    {"slice_range", "m", "slice", "ends of the scale of the slice's distances"},
     {"range", "", "range", "ends of the scale of what was painted"}};
 
-PictureSize parseSize(const std::string& text) {
-  PictureSize size;
+void parseSize(const std::string& text, Figure& figure) {
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%6dx%6d%c", &size.width, &size.height, &rest) != 2 ||
-      size.width < 16 || size.height < 16 || size.width > 16384 || size.height > 16384)
+  int &wide = figure.width, &high = figure.height;
+  if (std::sscanf(text.c_str(), "%6dx%6d%c", &wide, &high, &rest) != 2 || wide < 16 || high < 16 ||
+      wide > 16384 || high > 16384)
     throw Error("'" + text + "' is not WIDTHxHEIGHT with sides of 16 to 16384 pixels");
-  return size;
+}
+
+// The ratio of width to height is that of --size.
+Figure figureOf(const RenderOptions& options) {
+  Figure figure = options.figure;
+  FigureWidth width = options.width;
+  if (!options.sized) width.pixels = figure.width;
+  setSize(figure, width, static_cast<double>(figure.width) / figure.height, width.pixels);
+  return figure;
 }
 
 template <typename Values> std::vector<std::string> wordsFor(const Values& values) {
   return namesIn(values, [](const auto& value) { return std::string(name(value)); });
 }
 
-// LOW,HIGH in SI, or with a unit where they are lengths.
+// Parses LOW,HIGH in SI, or with a unit for lengths.
 ValueRange parseRange(const std::string& text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string::npos) throw Error("'" + text + "' is not LOW,HIGH");
@@ -59,7 +77,7 @@ ValueRange parseRange(const std::string& text) {
   return range;
 }
 
-// The paint that is read against a scale, at most one; it must be there.
+// Returns the layer's paint that has a colour scale, at most one; throws Error if it is not there.
 std::optional<PaintQuantity> readPaint(const std::set<Layer>& layers, const Scene& scene) {
   std::optional<PaintQuantity> found;
   bool colored = false;
@@ -84,9 +102,9 @@ std::optional<PaintQuantity> readPaint(const std::set<Layer>& layers, const Scen
   return found;
 }
 
-// The tool as the servo leaves it when it comes to `tip` from outside.
+// Returns the tool after the servo moved it to `tip` from outside.
 ToolSample toolAt(const CompiledScene& compiled, const Vec3& tip, Progress& progress) {
-  const TriangleMesh felt = feltTriangles(compiled, progress).mesh;
+  const TriangleMesh felt = hapticTriangles(compiled, progress).mesh;
   const ClosestPoint nearest = TriangleTree(felt).closestPoint(tip);
   const Box3 box = bounds(felt);
   const bool inside = FieldSampler(*compiled.built.field, compiled.scene.sampler).at(tip).phi < 0;
@@ -104,12 +122,27 @@ ToolSample toolAt(const CompiledScene& compiled, const Vec3& tip, Progress& prog
 }
 
 int runRender(const RenderOptions& options, Console& console) {
-  if (options.output.extension() != ".png")
-    throw Error("--output: a picture is a .png file, not '" + options.output.string() + "'");
-  requireWritable(options.output, {options.input}, FileKind::png);
-  if (!options.tip &&
+  const bool is_video = !options.replay.empty();
+  if (!is_video && !canSaveFigure(options.output))
+    throw Error("--output: a picture is a .png, .tif, .svg or .pdf file, not '" +
+                options.output.string() + "'");
+  if (is_video && options.output.extension() != ".ogv")
+    throw Error("--output: a video is an .ogv file, not '" + options.output.string() + "'");
+  requireWritable(options.output, {options.input, options.replay}, kindOfName(options.output));
+  const Figure figure = is_video ? withEvenSides(figureOf(options)) : figureOf(options);
+  if (is_video && figure.background == FigureBackground::transparent)
+    throw Error("--background: a video is not transparent");
+  if (is_video && !options.layers.contains(Layer::tip))
+    throw Error("--replay: the tool is not shown: add the layer tip to --show");
+  std::vector<ToolSample> samples;
+  if (is_video) samples = readToolSamplesCsv(options.replay);
+  if (is_video && samples.empty())
+    throw FileError(options.replay.string(), 0, "the recording has no row: nothing to replay");
+  if (!options.tip && !is_video &&
       (options.layers.contains(Layer::tip) || options.layers.contains(Layer::nodes)))
     throw Error("--show: the layers tip and nodes need --tip X,Y,Z");
+  if (options.slice && !options.layers.contains(Layer::slice))
+    throw Error("--slice: the layer slice is not shown: add it to --show");
   Scene scene = openWith(options.input, options.scene, console);
   if (scene.objects.empty())
     throw FileError(options.input.string(), 0, "the scene has no object: nothing to draw");
@@ -125,7 +158,15 @@ int runRender(const RenderOptions& options, Console& console) {
            paintOf(layer);
   });
   SceneView view;
-  if (quantity) view.lockPaintRange(*quantity, options.range);
+  ColorScales colors = scene.colors;
+  for (const auto& [thing, scale] : options.colors) colors[thing] = scale;
+  if (options.range) { // takes the place of the workspace's rule
+    ColorScale& scale = colors[std::string(name(layerOf(*quantity)))];
+    scale.range = options.range;
+    scale.percentile.reset();
+    scale.symmetric = false;
+  }
+  view.setColors(colors);
   const std::vector<std::string> layers = wordsFor(options.layers);
   Report report(kRenderKeys);
   report.set("picture", options.output.string());
@@ -133,8 +174,10 @@ int runRender(const RenderOptions& options, Console& console) {
   if (only_mesh) {
     view.setMesh(std::make_shared<const TriangleMesh>(worldMesh(scene)));
     view.setPaint(scene);
+    view.setAnnotations(pinAnnotations(scene.pins));
   } else {
     const auto compiled = compileFor(std::move(scene), console);
+    view.setAnnotations(pinAnnotations(compiled->scene.pins));
     view.setBand(band);
     view.setMesh(compiled->mesh);
     view.setPaint(compiled->scene);
@@ -145,20 +188,36 @@ int runRender(const RenderOptions& options, Console& console) {
     }
     if (options.layers.contains(Layer::stability)) {
       const SurfaceStability stability = requiredStability(*compiled, console.progress());
-      view.setStability(stability.surface.get(), shownRatios(stability.map));
+      view.setStability(stability.surface.get(), displayRatios(stability.map));
       report.set("stability", stabilityReport(stability, compiled->scene));
-      report.tell("colours", "K*/K from " + rounded(kLeastRatioShown) + " to " +
-                                 rounded(kMostRatioShown) + ", clipped beyond");
+      report.tell("colours", "K*/K from " + rounded(kMinRatioShown) + " to " +
+                                 rounded(kMaxRatioShown) + ", clipped beyond");
     }
     if (options.tip) view.setTool(toolAt(*compiled, *options.tip, console.progress()));
   }
   console.progress().throwIfCancelled();
+  if (options.slice) view.setSlice(*options.slice);
   view.showOnly(options.layers);
   view.setView(options.view);
-  renderToPng(view, options.size, options.output);
+  if (is_video) {
+    view.setTool(samples.front());
+    VideoWriter video(view, std::move(samples), figure, options.output);
+    while (video.writeNext()) {
+      console.progress().report(static_cast<double>(video.written()) / video.frames(), "frames");
+      console.progress().throwIfCancelled();
+    }
+    report.set("frames", video.frames());
+  } else {
+    saveFigure(view, figure, options.output);
+  }
 
-  report.set("width", options.size.width).set("height", options.size.height);
+  report.set("width", figure.width).set("height", figure.height);
+  if (figure.dpi) report.set("dpi", *figure.dpi);
+  report.set("background", std::string(name(figure.background)));
   report.set("view", std::string(name(options.view)));
+  if (const auto range = view.shownRange("slice"))
+    report.set("slice_range", Json(Json::Array{range->low, range->high}),
+               formatLength(range->low) + " to " + formatLength(range->high));
   if (quantity) {
     const ValueRange range = view.paintRange(*quantity);
     report.set("range", Json(Json::Array{range.low, range.high}),
@@ -172,42 +231,89 @@ int runRender(const RenderOptions& options, Console& console) {
 
 Command renderCommand() {
   auto options = std::make_shared<RenderOptions>();
-  const PictureSize& size = options->size;
+  const Figure& figure = options->figure;
   Command command{
       .name = "render",
       .summary = "a picture of a mesh or workspace and its field",
       .description =
           "Layers: " + joined(wordsFor(allLayers()), " ") +
           ". Views: " + joined(wordsFor(allViews()), " ") +
-          "; +x is seen from the +x side. The layers tip and nodes show what the servo makes of "
-          "the tool at --tip, come to from outside; the layer band is where an offset or a magnet "
-          "acts; the layer stability colours the surface by K*(x)/K for the scene's device "
-          "(device.* values; without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below "
-          "1 the loop would buzz when pressed with 1 N, violet where the tip slips off, dark where "
-          "the force jumps, grey where nothing is touched; colours end at 0.25 and 4. The layer "
-          "scale is a bar of a round length, of what is as far away as the middle. The layers "
-          "from color on show what was painted in a workspace: color with "
-          "relief shaded as relief, the others against a scale, one at a time, material also on "
-          "the slice; objects without it stay as they are.\n"
+          "; +x is seen from the +x side. The layers tip and nodes show the contact of the tool at "
+          "--tip, approached from outside; the layer band is where an offset or a magnet acts; the "
+          "layer stability colours the surface by K*(x)/K for the scene's device (device.* values; "
+          "without, a device of 0.1 kg and 0.5 N s/m at 1 kHz is assumed): below 1 the loop is "
+          "unstable when pressed with 1 N, violet where the tip slips off, dark where the force "
+          "jumps, grey where nothing can be touched; colours end at 0.25 and 4. The layer scale is "
+          "a bar of a round length, valid at the distance of the picture's centre. The layers from "
+          "color on show the paint of a workspace: color with relief shaded as relief, the others "
+          "against a scale, one at a time, material also on the slice; objects without it stay as "
+          "they are.\n"
+          "A figure for a paper: --width 85mm --dpi 300 --background transparent makes 1004 "
+          "pixels, "
+          "writes the resolution into the file and gives texts about 6 pt; --scale 2 doubles "
+          "pixels "
+          "and resolution, and leaves the looks. In .svg and .pdf, texts and the scale bar are "
+          "vectors over a picture of the rest. Parts of --without: " +
+          joined(wordsFor(allFigureParts()), " ") +
+          ".\n"
+          "A scale of --colors is a map (standard, viridis, cividis, magma, turbo, "
+          "cool-warm, greys) and any of reversed, log, symmetric, bands=N, range=LOW:HIGH, "
+          "percentile=P, opacity=O and digits=N, with commas between; iso and mesh have only an "
+          "opacity.\n"
           "Needs a display; on a machine without one: xvfb-run -a patina render ...",
       .examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
+                   "patina render bunny.ply -o cut.png --show mesh,slice --slice 0,1,1:12.5mm",
                    "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm",
+                   "patina render bunny.ply -o fig.tif --width 85mm --background transparent",
+                   "patina render bunny.ply -o cut.png --show slice --colors slice=viridis,bands=8",
                    "patina render workspace -o stiffness.png --show stiffness --range 0,2000"},
       .keys = kRenderKeys,
       .arguments = {sceneInput(options->input),
-                    outputTo(options->output, "PICTURE.png", "The picture."),
+                    outputTo(options->output, "PICTURE.png", "The picture; .tif .svg .pdf too."),
                     {"--show", "LAYERS", "", "mesh,color", "Layers, with commas between.",
                      parsedInto(options->layers, parseLayers)},
                     {"--view", "NAME", "", "iso", "Where the camera stands.",
                      parsedInto(options->view, parseView)},
                     {"--size", "WxH", "",
-                     std::to_string(size.width) + "x" + std::to_string(size.height), "Pixels.",
-                     parsedInto(options->size, parseSize)},
+                     std::to_string(figure.width) + "x" + std::to_string(figure.height), "Pixels.",
+                     [options](const std::string& text) { parseSize(text, options->figure); }},
+                    {"--width", "WIDTH", "", "that of --size",
+                     "Width in pixels or as 85mm; the height is in proportion to --size.",
+                     [options](const std::string& text) {
+                       const FigureWidth width = parseFigureWidth(text);
+                       options->width.pixels = width.pixels;
+                       options->width.length = width.length;
+                       options->sized = true;
+                     }},
+                    {"--dpi", "N", "1/inch", "300", "Resolution of a width on paper.",
+                     numberInto(10, 4800, options->width.dpi)},
+                    {"--scale", "N", "", "1", "Pixels per pixel of that size, 1 to 4.",
+                     numberInto(1, 4, options->width.scale)},
+                    {"--background", "NAME", "", "as-seen",
+                     "Behind everything: " + joined(wordsFor(allFigureBackgrounds()), " ") + ".",
+                     parsedInto(options->figure.background, parseFigureBackground)},
+                    {"--without", "PARTS", "", "", "Parts to leave out, with commas between.",
+                     parsedInto(options->figure.without, parseFigureParts)},
+                    {"--slice", "DIRECTION:POSITION", "", "y, in the middle",
+                     "Where the layer slice is: as x:12.5mm, or at an angle as 0,1,1:12.5mm; the "
+                     "position is along the direction, from the origin.",
+                     parsedInto(options->slice, parseSlice)},
                     {"--tip", "X,Y,Z", "m", "", "Place of the tip; units as 1mm,0,2mm.",
                      parsedInto(options->tip, parsePoint)},
+                    {"--replay", "RECORDING.csv", "", "",
+                     "Makes a video of 25 frames a second of a recording of the window or a table "
+                     "of patina feel, with --show mesh,tip and -o VIDEO.ogv.",
+                     into(options->replay)},
                     {"--range", "LOW,HIGH", "", "what is there",
                      "Ends of the scale of what was painted, SI or as 0,0.5mm.",
-                     parsedInto(options->range, parseRange)}},
+                     parsedInto(options->range, parseRange)},
+                    {"--colors", "THING=SCALE", "", "as in the workspace",
+                     "Colours of a thing (" + joined(coloredThings(), " ") +
+                         "), as in slice=viridis,range=-2:2mm.",
+                     [options](const std::string& text) {
+                       parseColorScaleOf(text, options->colors);
+                     },
+                     Times::any}},
       .run = [options](Console& console) { return runRender(*options, console); }};
   addHapticOptions(command, options->scene);
   addSampledFieldOptions(command, options->scene);

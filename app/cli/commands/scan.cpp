@@ -1,9 +1,10 @@
 #include "app/cli/commands/commands.h"
+#include "app/cli/input/mesh_input.h"
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
 #include "scan/run_scan.h"
-#include "session/store/workspace_link.h"
+#include "session/store/workspace_storage.h"
 
 namespace patina::cli {
 
@@ -16,7 +17,7 @@ const Keys kScanKeys = {
      "that ran; what each found is in the folder's scan.json, too",
      Shown::never,
      {{"step", "", ""}, {"folder", "", ""}, {"found", "", ""}, {"seconds", "s", ""}}},
-    {"done", "", "done", "false: the place on the mesh is not certain, and nothing is laid"},
+    {"done", "", "done", "false: the pose on the mesh is uncertain, and no texture was mapped"},
     {"workspace", "", "workspace", "with the mesh and its textures", Shown::if_any},
     {"textured", "", "textured", "the mesh as an OBJ with haptic coordinates", Shown::if_any}};
 
@@ -50,15 +51,9 @@ int runScanCommand(const RunScanOptions& options, Console& console) {
   if (found.done && options.to == ScanStep::texture)
     report.set("workspace", options.workspace.string())
         .set("textured", (options.folders.front() / "textured.obj").string());
-  if (!found.done) {
-    const Registration& place = found.registered->registration;
+  if (!found.done)
     console.warn(options.mesh.string() +
-                 (place.converged
-                      ? ": the place of the scans is not unique: " + inWords(*place.rivals)
-                      : ": no pose was found at which the scans lie on it as their "
-                        "noise lets expect") +
-                 ", so nothing is laid onto it");
-  }
+                 ": the pose of the scans is uncertain, so no texture was mapped");
   return console.report(report, found.done ? kDone : kNotSolved);
 }
 
@@ -68,21 +63,21 @@ Command scanCommand() {
   auto options = std::make_shared<RunScanOptions>();
   return {
       .name = "scan",
-      .summary = "scan folders become a workspace whose mesh feels as what was scanned",
+      .summary = "make a textured workspace from scan folders",
       .description =
-          "Runs the steps from frames to a feel: track (poses.tum), filter (path.csv), register "
-          "(registered.csv, registration.json) and texture (heights.csv, texture.json, the "
-          "workspace, "
-          "and textured.obj in the first FOLDER). Each leaves in the folder of its scan what the "
-          "commands leave, tables and textures to the last bit, and what it found in scan.json. "
-          "What "
-          "is there is not made again, unless --from names its step; paths are registered again "
-          "where "
-          "mesh, unit or paths are others, or where the place was not certain.\n"
-          "All folders are scans of one body, the poses of which one camera saw from one place. "
-          "Exit code 1 where the place on the mesh is not certain: the steps before it are kept.",
-      .examples = {"patina scan ribs weave --also survey --mesh toy.obj -o toy",
-                   "patina scan ribs --mesh toy.obj --from register -o toy"},
+          "Runs the steps from frames to a textured workspace: track (poses.tum), filter "
+          "(path.csv), register (registered.csv, registration.json) and texture (heights.csv, "
+          "texture.json, the workspace, and textured.obj in the first FOLDER). Each leaves in the "
+          "folder of its scan what the commands leave, tables and textures to the last bit, and "
+          "what it found in scan.json. Existing results are kept, unless --from names their step; "
+          "paths are registered again if mesh, unit or paths have changed, or if the pose was "
+          "uncertain.\n"
+          "All folders are scans of one body, made with one camera in one place. Where the scans "
+          "tell "
+          "a stiffness, it becomes that of the body. Exit code 1 where the pose on the mesh is "
+          "uncertain: the steps before it are kept, and so is a certain pose of an earlier run.",
+      .examples = {"patina scan ribs weave --with survey --mesh toy.obj -o toy",
+                   "patina scan ribs --mesh toy.obj --from register -o toy2"},
       .keys = kScanKeys,
       .arguments =
           {input("FOLDER", "Scan folder: frames or poses.tum, probe.csv, rig.json.",
@@ -91,17 +86,17 @@ Command scanCommand() {
             Times::once},
            {"-o,--output", "WORKSPACE", "", "", "The workspace to be made.",
             outInto(options->workspace), Times::at_most_once, true},
-           {"--also", "FOLDER", "", "",
+           {"--with", "FOLDER", "", "",
             "Another scan of the body, which only helps to find the place: no texture is made of "
             "it.",
             into(options->also), Times::any},
            {"--from", "STEP", "", "the first whose files are not there",
             "Run this step and those after it: track, filter, register or texture.",
-            [options](const std::string& word) { options->from = parseStep(word); }},
+            parsedInto(options->from, parseStep)},
            {"--to", "STEP", "", "texture", "The last step to run.",
-            [options](const std::string& word) { options->to = parseStep(word); }},
-           {"--unit", "UNIT", "", "mm", "Of the mesh: mm, cm, m, in or fit.",
-            parsedInto(options->unit, parseMeshUnit)}},
+            parsedInto(options->to, parseStep)},
+           tipRadius(options->tip_radius, "that of rig.json"),
+           unitOfMesh(options->unit)},
       .run = [options](Console& console) { return runScanCommand(*options, console); }};
 }
 

@@ -6,21 +6,60 @@
 
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/scene_options.h"
-#include "app/cli/input/simulation_start.h"
 #include "app/cli/output/reports.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/numbers.h"
-#include "haptics/contact/plane.h"
-#include "haptics/devices/simulation.h"
+#include "geometry/tree/triangle_tree.h"
+#include "haptics/law/plane.h"
+#include "haptics/simulation/simulation.h"
+#include "session/open/session.h"
 
 namespace patina::cli {
-
 namespace {
 
-constexpr double kDefaultPress = 1; // [N], where nothing else sets the tip in motion
+// Start of a simulated tip on a model.
+struct SimulationStart {
+  Vec3 surface = Vec3::Zero(); // [m], world: first contact of the tip's centre
+  Vec3 inward = Vec3::Zero();  // unit
+};
 
-// "0.3": a share of the period to both sides; "0.5-2ms" or "0.0005-0.002": from and to.
+constexpr int kNewtonSteps = 20;
+constexpr double kLeastGradient = 0.1;
+
+// Point below the middle of the top (+z) of the model's box or, over a hole such as a ring's, the
+// model's nearest point to that middle. Includes offset and tip radius. Throws Error if the field
+// has no gradient there.
+SimulationStart simulationStart(const CompiledScene& compiled) {
+  const TriangleMesh& mesh = *compiled.mesh;
+  const Box3 box = bounds(mesh);
+  const double height = box.sizes().norm();
+  const Vec3 above(box.center().x(), box.center().y(), box.max().z() + 0.01 * height);
+  const TriangleTree tree(mesh);
+  const std::optional<RayHit> hit = tree.firstHit(above, -Vec3::UnitZ(), 2 * height);
+  const Vec3 foot = hit ? Vec3(above - hit->t * Vec3::UnitZ()) : tree.closestPoint(above).point;
+
+  const HapticProperties& haptics = compiled.scene.haptics;
+  const double iso = haptics.tip_radius.value_or(0) + haptics.offset.value_or(0);
+  // The field of a two-sided sheet has no gradient on the sheet itself.
+  Vec3 p = foot + iso * (above - foot).normalized();
+  const FieldSampler sampler(*compiled.built.field, compiled.scene.sampler);
+  Vec3 direction = Vec3::Zero();
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    const GridSample sample = sampler.at(p);
+    const double length = sample.gradient.norm();
+    if (!(length > kLeastGradient))
+      throw Error("there is no direction at the start of the run, below the middle of the top; "
+                  "raise --resolution or --band");
+    direction = sample.gradient / length;
+    p -= (sample.phi - iso) / length * direction;
+  }
+  return {p, -direction};
+}
+
+constexpr double kDefaultPress = 1; // [N], if nothing else moves the tip
+
+// Parses "0.3", a fraction of the period to both sides, or "0.5-2ms" or "0.0005-0.002", a range.
 struct Jitter {
   std::optional<double> share;
   std::optional<PeriodRange> range;
@@ -60,21 +99,21 @@ struct SimulateOptions {
   SimulationSpec spec;
 };
 
-struct Felt {
+struct LawOutput {
   Scene scene;
   std::shared_ptr<const HapticSnapshot> snapshot;
-  std::shared_ptr<const CompiledScene> compiled; // keeps a model's field; null for the plane
+  std::shared_ptr<const CompiledScene> compiled; // keeps a model's field alive; null for the plane
   SimulationStart start{Vec3::Zero(), -Vec3::UnitZ()};
 };
 
-Felt feltBy(const SimulateOptions& options, Console& console) {
-  Felt felt;
+LawOutput hapticBy(const SimulateOptions& options, Console& console) {
+  LawOutput felt;
   if (options.plane) {
     console.warnOfNoEffect(
         {"--resolution", "--voxel", "--band", "--sampler", "--unit", "--up", "--iso", "--texture"},
         "with --plane");
     applySettings(felt.scene, options.scene.settings);
-    // A limit of the force would hide where the loop ends.
+    // A force limit would hide the limit of the loop.
     const bool limited = std::ranges::any_of(
         options.scene.settings, [](const auto& setting) { return setting.first == "force.limit"; });
     if (!limited) felt.scene.haptics.force_limit = std::numeric_limits<double>::infinity();
@@ -95,7 +134,7 @@ Felt feltBy(const SimulateOptions& options, Console& console) {
   return felt;
 }
 
-SimulationSpec specFor(const SimulateOptions& options, const Felt& felt) {
+SimulationSpec specFor(const SimulateOptions& options, const LawOutput& felt) {
   SimulationSpec spec = options.spec;
   spec.device = *felt.scene.device_model;
   spec.surface = felt.start.surface;
@@ -108,7 +147,7 @@ SimulationSpec specFor(const SimulateOptions& options, const Felt& felt) {
   spec.jitter = options.jitter.range;
   if (const auto share = options.jitter.share)
     spec.jitter = PeriodRange{(1 - *share) / spec.device.rate, (1 + *share) / spec.device.rate};
-  if (options.naive) spec.naive_limit = 2 * spec.device.damping * spec.device.rate;
+  if (options.naive) spec.rate_limit = 2 * spec.device.damping * spec.device.rate;
   return spec;
 }
 
@@ -177,7 +216,7 @@ void setCoupling(const std::string& which, const auto& coupling, const std::stri
   report.set(which + "_damping", damping);
 }
 
-Report reportOf(const Felt& felt, const SimulationSpec& spec, const SimulationReport& run,
+Report reportOf(const LawOutput& felt, const SimulationSpec& spec, const SimulationReport& run,
                 double seconds_taken) {
   const SampledLoop loop = sceneLoop(felt.scene.haptics, spec.device, spec.hand);
   const StabiliserPlan& plan = felt.snapshot->stabilisers;
@@ -190,8 +229,8 @@ Report reportOf(const Felt& felt, const SimulationSpec& spec, const SimulationRe
   report.set("stable", run.stable).set("rms_velocity", run.rms_velocity);
   report.set("predicted_limit", stiffnessLimit(loop),
              rounded(stiffnessLimit(loop)) + " N/m of this loop without stabilisers (" +
-                 rounded(ruleOfThumb(loop)) + " by the rule of thumb)");
-  report.set("rule_of_thumb", ruleOfThumb(loop));
+                 rounded(linearStabilityLimit(loop)) + " by the rule of thumb)");
+  report.set("rule_of_thumb", linearStabilityLimit(loop));
   report.set("stiffness", stiffness,
              rounded(stiffness) + " N/m asked" +
                  (displayed ? ", " + rounded(*displayed) + " N/m displayed" : ""));
@@ -203,10 +242,10 @@ Report reportOf(const Felt& felt, const SimulationSpec& spec, const SimulationRe
   report.set("max_depth", run.max_depth).set("max_force", run.max_force);
   report.set("energy_absorbed", run.energy.absorbed,
              inScience(run.energy.absorbed) + " J by the surface, " +
-                 inScience(run.energy.credited) + " J with the device's damping");
-  report.set("energy_credited", run.energy.credited);
+                 inScience(run.energy.absorbed_with_damping) + " J with the device's damping");
+  report.set("energy_credited", run.energy.absorbed_with_damping);
   report.set("energy_absorbed_min", run.energy.lowest_absorbed);
-  report.set("energy_credited_min", run.energy.lowest_credited);
+  report.set("energy_credited_min", run.energy.lowest_absorbed_with_damping);
   report.set("ticks", static_cast<std::size_t>(run.ticks));
   report.set("contact_ticks", static_cast<std::size_t>(run.contact_ticks));
   report.set("fault_ticks", static_cast<std::size_t>(run.fault_ticks),
@@ -217,7 +256,7 @@ Report reportOf(const Felt& felt, const SimulationSpec& spec, const SimulationRe
   return report;
 }
 
-// What would keep the tip on the surface, of what was not given already.
+// Advises options that would keep the tip on the surface and are not set.
 void warnOfLeaving(const SimulateOptions& options, const SimulationSpec& spec,
                    const SimulationReport& run, Console& console) {
   if (run.contact_ticks == 0) {
@@ -239,7 +278,7 @@ int runSimulate(const SimulateOptions& options, Console& console) {
   if (!options.plane && options.input.empty())
     throw Error("simulate: give a workspace, a mesh or --plane");
   if (!options.output.empty()) requireWritable(options.output, {options.input}, FileKind::table);
-  const Felt felt = feltBy(options, console);
+  const LawOutput felt = hapticBy(options, console);
   const SimulationSpec spec = specFor(options, felt);
 
   RunTable table;
@@ -272,36 +311,33 @@ void addDeviceOptions(Command& command, SimulateOptions& options) {
   SimulationSpec& spec = options.spec;
   const Argument more[] = {
       {"--saturation", "N", "N", "", "Largest force of the device.",
-       inRange(1e-6, 1e6, [&spec](double value) { spec.saturation = value; })},
+       numberInto(1e-6, 1e6, spec.saturation)},
       {"--jitter", "SHARE", "", "",
        "Period of each tick: uniform within this share about T, or in a range such as 0.5-2ms.",
        parsedInto(options.jitter, parseJitter)},
       {"--seed", "N", "", "1", "Of the jitter.",
-       inRange(
-           0, 4294967295.0, [&spec](double value) { spec.seed = static_cast<unsigned>(value); },
-           NumberKind::whole)}};
+       numberInto(0, 4294967295.0, spec.seed, NumberKind::whole)}};
   command.arguments.insert(command.arguments.end(), std::begin(more), std::end(more));
 }
 
 void addHandOptions(Command& command, SimulateOptions& options) {
   HandModel& hand = options.spec.hand;
-  const auto to = [](auto& target) { return [&target](double value) { target = value; }; };
   const Argument list[] = {
-      {"--hand-mass", "KG", "kg", "0", "Mass that the hand adds.", inRange(0, 100, to(hand.mass))},
+      {"--hand-mass", "KG", "kg", "0", "Mass that the hand adds.", numberInto(0, 100, hand.mass)},
       {"--hand-damping", "B", "N s/m", "0", "Damping that the hand adds.",
-       inRange(0, 1e4, to(hand.damping))},
+       numberInto(0, 1e4, hand.damping)},
       {"--hand-stiffness", "K", "N/m", "0", "Spring of the hand to where the tip starts.",
-       inRange(0, 1e6, to(hand.stiffness))},
+       numberInto(0, 1e6, hand.stiffness)},
       {"--press", "N", "N", "0",
        "Constant force into the surface; 1 where neither depth, gap nor speed is given.",
-       inRange(0, 1000, to(options.press))},
+       numberInto(0, 1000, options.press)},
       {"--start-depth", "LENGTH", "m", "0", "The tip starts so deep.",
-       inRange(0, 1, to(options.depth), NumberKind::length)},
+       numberInto(0, 1, options.depth, NumberKind::length)},
       {"--start-gap", "LENGTH", "m", "0", "The tip starts so far out.",
-       inRange(0, 1, to(options.gap), NumberKind::length)},
+       numberInto(0, 1, options.gap, NumberKind::length)},
       {"--start-speed", "V", "m/s", "0", "Speed into the surface at the start.",
-       inRange(0, 100, to(options.speed))},
-      {"--seconds", "S", "s", "8", "Simulated time.", inRange(3, 1e5, to(options.spec.seconds))}};
+       numberInto(0, 100, options.speed)},
+      {"--seconds", "S", "s", "8", "Simulated time.", numberInto(3, 1e5, options.spec.seconds)}};
   command.arguments.insert(command.arguments.end(), std::begin(list), std::end(list));
 }
 
@@ -336,10 +372,10 @@ Command simulateCommand() {
           "second second, or below 1e-8 m/s. A loop that does not settle is a result, not an "
           "error.\n"
           "--stabiliser auto leaves everything out where the limit K* is twice the stiffness or "
-          "more; else it ties the tip to the contact point by a coupling as stiff as the device "
-          "bears. Relief and roughness that are stiffer along the surface than half of it are tied "
-          "likewise. naive limits the change of the force a tick to (2b/T)|dx| and is there to "
-          "show that this makes matters worse. On the plane the force has no limit unless "
+          "more; otherwise it adds a virtual coupling between tip and contact point, as stiff as "
+          "is stable on the device, also along the surface if relief and roughness are stiffer "
+          "than half of it. naive limits the change of the force per tick to (2b/T)|dx|, to show "
+          "that this makes the loop less stable. On the plane the force has no limit unless "
           "--force-limit or --saturation sets one.",
       .examples =
           {"patina simulate --plane --stiffness 1e5 --delay 1 --press 1",

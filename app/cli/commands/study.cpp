@@ -1,20 +1,115 @@
-#include "app/studies/study.h"
-
 #include <algorithm>
+#include <cstdio>
+#include <string>
 
 #include "app/cli/commands/commands.h"
-#include "app/cli/input/suggestion.h"
-#include "app/cli/output/folded_table.h"
+#include "app/cli/framework/suggestion.h"
+#include "app/cli/output/help.h"
 #include "app/cli/output/reports.h"
+#include "app/studies/framework/studies.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/staged_folder.h"
+#include "core/work_precision.h"
 #include "visualization/plots/plot.h"
 #include "visualization/view/display.h"
 
 namespace patina::cli {
-
 namespace {
+
+// Prints a study's table with any number of columns.
+constexpr std::size_t kTableWidth = 120;
+
+struct Column {
+  std::string name;
+  bool setting = false; // repeated in every block
+  std::vector<std::string> cells;
+
+  std::size_t width() const {
+    std::size_t widest = name.size();
+    for (const std::string& cell : cells) widest = std::max(widest, cell.size());
+    return widest;
+  }
+  bool neverChanges() const {
+    return std::ranges::all_of(cells, [&](const auto& cell) { return cell == cells.front(); });
+  }
+};
+
+// Four digits for reading; the files contain all digits.
+std::string shortened(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::vector<Column> columnsOf(const WorkPrecisionTable& table) {
+  std::vector<Column> columns;
+  const std::size_t count = table.rows.size();
+  const auto put = [&](std::size_t row, const std::string& name, bool setting, std::string cell) {
+    auto column = std::ranges::find(columns, name, &Column::name);
+    if (column == columns.end())
+      column = columns.insert(columns.end(), {name, setting, std::vector<std::string>(count)});
+    column->cells[row] = std::move(cell);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const WorkPrecisionRow& row = table.rows[i];
+    for (const auto& [name, value] : row.settings)
+      put(i, name, true, value.isString() ? value.asString() : value.dump(-1));
+    put(i, "error [" + table.error_unit + "]", false, shortened(row.error));
+    put(i, "error_max [" + table.error_unit + "]", false, shortened(row.error_max));
+    put(i, "ns", false, shortened(row.ns));
+    put(i, "bytes", false, shortened(row.bytes));
+    for (const auto& [name, value] : row.more) put(i, name, false, shortened(value));
+  }
+  return columns;
+}
+
+constexpr std::size_t kGap = 2;
+
+std::string lineOf(const std::vector<const Column*>& columns, std::size_t row) {
+  std::string line;
+  for (const Column* column : columns) {
+    const std::string& cell = row == 0 ? column->name : column->cells[row - 1];
+    line += std::string((line.empty() ? 0 : kGap) + column->width() - cell.size(), ' ') + cell;
+  }
+  return line + "\n";
+}
+
+// Aligns columns within `width`; further columns follow in blocks with the same settings. A
+// constant column is printed once, beside the title.
+std::string wrappedTable(const WorkPrecisionTable& table, std::size_t width = kTableWidth) {
+  const std::vector<Column> columns = columnsOf(table);
+  std::string title = table.title;
+  std::vector<const Column*> settings, results;
+  std::size_t settings_width = 0;
+  for (const Column& column : columns) {
+    if (table.rows.size() > 1 && column.neverChanges() && !column.name.starts_with("error")) {
+      title += "; " + column.name + " " + column.cells.front();
+    } else if (column.setting) {
+      settings.push_back(&column);
+      settings_width += column.width() + kGap;
+    } else {
+      results.push_back(&column);
+    }
+  }
+  std::string text = wrapped(title, 2, 0, width) + "\n";
+  for (auto next = results.begin(); next != results.end();) {
+    std::vector<const Column*> block = settings;
+    std::size_t used = settings_width;
+    do {
+      used += (*next)->width() + kGap;
+      block.push_back(*next++);
+    } while (next != results.end() && used + (*next)->width() <= width);
+    for (std::size_t row = 0; row <= table.rows.size(); ++row) text += lineOf(block, row);
+    if (next != results.end()) text += "\n";
+  }
+  if (table.order_fitted) {
+    text += "order fitted " + shortened(*table.order_fitted);
+    if (table.order_expected) text += ", expected " + shortened(*table.order_expected);
+    text += "\n";
+  }
+  return text;
+}
 
 struct StudyCommandOptions {
   std::string name;
@@ -50,13 +145,13 @@ bool canDraw(Console& console) {
   }
 }
 
-// "field.csv", or "field-2.csv" where a study makes several tables.
+// "field.csv", or "field-2.csv" if a study makes several tables.
 std::string baseName(const Study& study, std::size_t index, std::size_t count) {
   const std::string name(study.name);
   return count == 1 ? name : name + "-" + std::to_string(index + 1);
 }
 
-// A table of orders alone has nothing to plot against time.
+// A table without times has nothing to plot against time.
 bool hasTimes(const WorkPrecisionTable& table) {
   return std::any_of(table.rows.begin(), table.rows.end(),
                      [](const auto& row) { return row.ns > 0 && row.error > 0; });
@@ -75,7 +170,7 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
   const std::vector<Study> list = chosen(options.name);
   const std::filesystem::path& folder = options.output;
   const bool draws = canDraw(console);
-  // All of them before any is written: Ctrl-C leaves none.
+  // Computes all before writing any, so that Ctrl-C leaves no files.
   std::vector<std::vector<WorkPrecisionTable>> found;
   for (const Study& study : list)
     found.push_back(tablesOf(study, options.study, console.progress()));
@@ -84,7 +179,7 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
                                   ".json");
 
   Json tables = Json::array(), rows = Json::array(), files = Json::array();
-  Json order_fitted, order_expected; // of the first table that has a theory to be held against
+  Json order_fitted, order_expected; // first table with an expected order
   std::string text;
   for (std::size_t k = 0; k < list.size(); ++k) {
     for (std::size_t i = 0; i < found[k].size(); ++i) {
@@ -105,7 +200,7 @@ int runStudy(const StudyCommandOptions& options, Console& console) {
       }
       addRows(json, rows);
       tables.push(json);
-      text += foldedText(table) + "  " + (folder / base).string() + ".csv .json" +
+      text += wrappedTable(table) + "  " + (folder / base).string() + ".csv .json" +
               (draws && hasTimes(table) ? " .png\n\n" : "\n\n");
     }
   }

@@ -1,25 +1,23 @@
 #include <chrono>
 
 #include "acquisition/files/camera_file.h"
-#include "acquisition/tracking/track_frames.h"
 #include "app/cli/commands/commands.h"
 #include "app/cli/input/input_files.h"
 #include "app/cli/input/scan_input.h"
 #include "app/cli/output/reports.h"
-#include "core/error.h"
+#include "core/file.h"
 #include "core/numbers.h"
 #include "core/output_target.h"
 #include "core/percentiles.h"
+#include "scan/track_scan.h"
 
 namespace patina::cli {
 
 namespace {
 
 struct TrackOptions {
-  std::string frames;
-  std::filesystem::path camera, rig, output;
-  double rate = 0;
-  FinderOptions finder;
+  std::filesystem::path camera, output;
+  TrackScanOptions scan;
 };
 
 const Keys kTrackKeys = {
@@ -33,8 +31,7 @@ const Keys kTrackKeys = {
      Shown::if_any,
      {{"t", "s", ""}, {"why", "", ""}}},
     {"unreadable", "", "unreadable", "frames that are missing or no picture", Shown::if_any},
-    {"ambiguous", "", "ambiguous", "frames in which the rig may be tilted either way",
-     Shown::if_any},
+    {"ambiguous", "", "ambiguous", "frames with an ambiguous tilt of the rig", Shown::if_any},
     {"misfit", "", "misfit", "frames whose markers are not where the rig has them", Shown::if_any},
     {"dropped_markers", "", "dropped", "markers that contradicted the others of a frame",
      Shown::if_any},
@@ -61,32 +58,24 @@ Json sigmaJson(const std::vector<CameraPose>& poses) {
 }
 
 int runTrack(TrackOptions options, Console& console) {
-  options.camera = besideFrames(options.camera, "--camera", "camera.yml", options.frames);
-  options.rig = besideFrames(options.rig, "--rig", "rig.json", options.frames);
-  const Camera camera = readCamera(options.camera);
-  const std::vector<RigMarker> rig = readMarkers(options.rig);
-  requireWritable(options.output, {options.frames, options.camera, options.rig}, FileKind::poses);
-  if (const auto folder = scanFolderOf(options.frames);
-      folder && pathExists(*folder / "frames.csv"))
+  TrackScanOptions& scan = options.scan;
+  options.camera = scanFile(options.camera, "--camera", "camera.yml", scan.frames);
+  scan.rig = scanFile(scan.rig, "--rig", "rig.json", scan.frames);
+  scan.camera = readCamera(options.camera);
+  scan.markers = readMarkers(scan.rig);
+  requireWritable(options.output, {scan.frames, options.camera, scan.rig}, FileKind::poses);
+  if (const auto folder = scanFolderOf(scan.frames); folder && pathExists(*folder / "frames.csv"))
     console.warnOfNoEffect({"--rate"}, "beside frames.csv");
-  if (options.frames.starts_with("camera:")) console.warnOfNoEffect({"--rate"}, "on a camera");
-  const std::unique_ptr<FrameSource> frames = openFrames(options.frames, options.rate);
+  if (scan.frames.starts_with("camera:")) console.warnOfNoEffect({"--rate"}, "on a camera");
   const auto begin = std::chrono::steady_clock::now();
-  TrackedFrames found;
-  try {
-    found = trackFrames(*frames, camera, rig, options.finder, console.progress());
-  } catch (const FileError&) {
-    throw;
-  } catch (const Error& error) {
-    throw FileError(options.rig.string(), 0, error.what());
-  }
+  const TrackScanReport found = trackScan(scan, console.progress());
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
 
   Report report(kTrackKeys);
-  report.set("lens", lensName(camera));
+  report.set("lens", lensName(scan.camera));
   report.set("frames", found.frames).set("frames_with_pose", found.poses.size());
   Json without = Json::array();
-  for (const NoPose& gap : found.without)
+  for (const MissingPose& gap : found.without)
     without.push(Json::object().set("t", gap.t).set("why", gap.why));
   report.set("without_pose", without,
              found.without.empty()
@@ -102,51 +91,52 @@ int runTrack(TrackOptions options, Console& console) {
     report.set("sigma", sigma,
                formatLength(sigma.at("position").asNumber()) + ", " +
                    rounded(1e3 * sigma.at("angle").asNumber()) + " mrad");
-    writePoses(options.output, found.poses, found.without);
+    writePoses(options.output, found.poses, found.without, found.rig_doubt);
   }
   report.set("seconds", taken.count());
-  for (const std::string& line : warningsOf(found, options.frames, options.rig)) console.warn(line);
+  for (const std::string& line : found.warnings) console.warn(line);
   if (found.poses.empty())
-    console.warn(options.frames + ": no frame shows a pose of the rig, so nothing is written");
-  return console.report(report, found.poses.empty() ? kNotSolved : kDone);
+    console.warn(scan.frames + ": no frame shows a pose of the rig, so nothing is written");
+  return console.report(report, found.isOfAnotherRig() || found.poses.empty() ? kNotSolved : kDone);
 }
 
 } // namespace
 
 Command trackCommand() {
   auto options = std::make_shared<TrackOptions>();
-  return {
-      .name = "track",
-      .summary = "frames of a camera become poses of the markers' rig, with error bars",
-      .description =
-          "FRAMES is a scan folder (frames/, frames.csv, camera.yml, rig.json), a folder of "
-          "pictures, a video, or live until Ctrl-C: camera:0 and so on, or replay:SCAN, the frames "
-          "of a scan folder at their own pace. All markers of the rig that a frame shows give its "
-          "pose together, from lines "
-          "fitted to their edges. A frame without a pose, by whatever cause, is a comment in "
-          "POSES.tum and is listed in the report; one that could be tilted either way is decided "
-          "by how all faces of the rig look or by the frame before it, or left out.",
-      .examples =
-          {"patina track scan -o scan/poses.tum",
-           "patina track pictures --rate 30 --camera camera.yml --rig rig.json -o poses.tum",
-           "patina track hand.mp4 --camera camera.yml --rig rig.json -o poses.tum"},
-      .keys = kTrackKeys,
-      .arguments = {input("FRAMES",
-                          "Scan folder, folder of pictures, video, camera:N or replay:SCAN.",
-                          Setter([options](const std::string& text) { options->frames = text; },
-                                 filesOfSource)),
-                    outputTo(options->output, "POSES.tum", "The poses, with deviations."),
-                    {"--camera", "CAMERA.yml", "", "FRAMES/camera.yml",
-                     "What the camera's calibration says.", into(options->camera)},
-                    {"--rig", "RIG.json", "", "FRAMES/rig.json",
-                     "Where the markers are on the probe.", into(options->rig)},
-                    {"--rate", "HZ", "Hz", "",
-                     "Frames a second, where there is no frames.csv, or other than a video says.",
-                     inRange(1e-3, 1e5, [options](double rate) { options->rate = rate; })},
-                    {"--thorough", "", "", "",
-                     "Look for small, blurred and crowded markers too, ten times as long.",
-                     into(options->finder.thorough)}},
-      .run = [options](Console& console) { return runTrack(*options, console); }};
+  return {.name = "track",
+          .summary = "frames of a camera become poses of the markers' rig, with error bars",
+          .description =
+              "FRAMES is a scan folder (frames/, frames.csv, camera.yml, rig.json), a folder of "
+              "pictures, a video, or live until Ctrl-C: camera:0 and so on, or replay:SCAN, the "
+              "frames of a scan folder at their own pace. All markers of the rig that a frame "
+              "shows give its pose together, from lines fitted to their edges. A frame without a "
+              "pose, by whatever cause, is a comment in POSES.tum and is listed in the report; one "
+              "that could be tilted either way is decided by how all faces of the rig look or by "
+              "the frame before it, or left out. Exit code 1 if no frame shows a pose, or in most "
+              "frames a marker is not where the rig has it and no cause is found; where one is "
+              "found, the deviations of the poses contain it.",
+          .examples =
+              {"patina track scan -o scan/poses.tum",
+               "patina track pictures --rate 30 --camera camera.yml --rig rig.json -o poses.tum",
+               "patina track hand.mp4 --camera camera.yml --rig rig.json -o poses.tum"},
+          .keys = kTrackKeys,
+          .arguments =
+              {input("FRAMES", "Scan folder, folder of pictures, video, camera:N or replay:SCAN.",
+                     Setter([options](const std::string& text) { options->scan.frames = text; },
+                            filesOfSource)),
+               outputTo(options->output, "POSES.tum", "The poses, with deviations."),
+               {"--camera", "CAMERA.yml", "", "FRAMES/camera.yml", "Calibration of the camera.",
+                into(options->camera)},
+               {"--rig", "RIG.json", "", "FRAMES/rig.json", "Where the markers are on the probe.",
+                into(options->scan.rig)},
+               {"--rate", "HZ", "Hz", "",
+                "Frames a second, where there is no frames.csv, or other than a video says.",
+                numberInto(1e-3, 1e5, options->scan.rate)},
+               {"--thorough", "", "", "",
+                "Look for small, blurred and crowded markers too, ten times as long.",
+                into(options->scan.finder.thorough)}},
+          .run = [options](Console& console) { return runTrack(*options, console); }};
 }
 
 } // namespace patina::cli

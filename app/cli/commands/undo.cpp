@@ -7,7 +7,7 @@
 #include "core/utc_time.h"
 #include "session/store/journal_fold.h"
 #include "session/store/replay.h"
-#include "session/store/workspace_link.h"
+#include "session/store/workspace_storage.h"
 
 namespace patina::cli {
 
@@ -62,22 +62,22 @@ struct Counts {
   std::size_t undoable = 0, redoable = 0, moved = 0;
 };
 
-// What a replay costs is paid only where the scene there is not stored.
+// A replay is needed only if the scene there is not stored.
 Counts move(const std::filesystem::path& folder, std::size_t steps, Way way, Console& console) {
-  auto opened = WorkspaceLink::open(folder, Replayer(), kHistoryBudget, true, false);
+  auto opened = WorkspaceStorage::open(folder, Replayer(), kHistoryBudget, true, false);
   EditHistory& history = *opened.history;
   steps = std::min(steps, way == Way::back ? history.undoable() : history.redoable());
+  if (isRepeated(folder, opened.intents, console)) steps = 0; // another program has just done it
   if (steps > 0) {
     const std::size_t target =
         way == Way::back ? history.undoable() - steps : history.undoable() + steps;
     Scene scene = history.sceneAt(target);
-    console.progress().throwIfCancelled();
-    if (way == Way::back)
-      opened.link->recordUndo(steps);
-    else
-      opened.link->recordRedo(steps);
-    history.place(target, std::move(scene));
-    opened.link->save(history);
+    opened.storage->setIntent(console.intent);
+    console.commit([&] {
+      way == Way::back ? opened.storage->recordUndo(steps) : opened.storage->recordRedo(steps);
+    });
+    history.setPosition(target, std::move(scene));
+    saveJournaled(folder, console, [&] { opened.storage->save(history); });
   }
   return {history.undoable(), history.redoable(), steps};
 }
@@ -86,18 +86,20 @@ int runHistory(const HistoryOptions& options, Way way, Console& console) {
   if (options.list) console.warnOfNoEffect({"--steps"}, "with --list");
   const std::filesystem::path folder = workspaceFolder(options.workspace);
   Counts counts;
+  bool repeated = false;
   Report report(kUndoKeys);
   {
     const OpenedWorkspace found = openHistory(folder);
     for (const std::string& note : found.notes) console.warn(note);
     const FoldedJournal fold = folded(found.journal, found.journal_file.string());
     counts = {fold.position, fold.steps.size() - fold.position, 0};
+    repeated = !options.list && isRepeated(folder, intentsOf(found), console);
     if (options.list) listEdits(fold, report);
   }
   const std::size_t possible = way == Way::back ? counts.undoable : counts.redoable;
-  if (!options.list && possible > 0)
+  if (!options.list && !repeated && possible > 0)
     counts = move(folder, static_cast<std::size_t>(options.steps), way, console);
-  if (!options.list && counts.moved == 0)
+  if (!options.list && !repeated && possible == 0)
     console.warn(folder.string() +
                  (way == Way::back ? ": there is nothing to undo" : ": there is nothing to redo"));
   const bool back = way == Way::back;
@@ -115,9 +117,9 @@ Command historyCommand(Way way) {
       .name = name,
       .summary = back ? "take back edits of a workspace" : "do again what was undone",
       .description =
-          std::string(back ? "The workspace is as it was before its last edit, bit for bit; what "
-                             "was undone can be redone until something else is edited."
-                           : "The workspace is as it was before patina undo, bit for bit.") +
+          std::string(back ? "Restores the workspace before its last edit, bit for bit; undone "
+                             "edits can be redone until the next edit."
+                           : "Restores the workspace before patina undo, bit for bit.") +
           " Edits are strokes, values set, and objects added, moved or removed. If there are fewer "
           "steps than asked for, all are taken; with none the folder stays as it is and the exit "
           "code is 0.",
@@ -126,11 +128,10 @@ Command historyCommand(Way way) {
       .keys = kUndoKeys,
       .arguments = {input("WORKSPACE", "The folder.", into(options->workspace)),
                     {"--steps", "N", "", "1", "How many edits.",
-                     inRange(
-                         1, 1e9, [options](double n) { options->steps = static_cast<int>(n); },
-                         NumberKind::whole)},
+                     numberInto(1, 1e9, options->steps, NumberKind::whole)},
                     {"--list", "", "", "", "Only print the history.", into(options->list)}},
-      .run = [options, way](Console& console) { return runHistory(*options, way, console); }};
+      .run = [options, way](Console& console) { return runHistory(*options, way, console); },
+      .changes_workspace = true};
 }
 
 } // namespace

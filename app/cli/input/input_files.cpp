@@ -19,7 +19,7 @@ void addFile(const fs::path& path, Json& list) {
   Json hash;
   try {
     if (fs::is_regular_file(path, code)) hash = sha256OfFile(path);
-  } catch (const FileError&) { // the command reads it too, and says what is wrong
+  } catch (const FileError&) { // the command reads it too and reports the error
   }
   list.push(Json::object().set("path", path.string()).set("sha256", std::move(hash)));
 }
@@ -28,7 +28,7 @@ void addWorkspace(const fs::path& folder, Json& list) {
   addFile(folder / kManifestName, list);
   try {
     if (const auto journal = readManifest(folder).journal) addFile(folder / journal->file, list);
-  } catch (const FileError&) { // a damaged one, which may be read to be mended
+  } catch (const FileError&) { // a damaged workspace, which may be recovered
   }
 }
 

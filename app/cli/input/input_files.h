@@ -1,5 +1,5 @@
-// Which files a command reads, for its report: by content, so that a published table can be
-// checked.
+// Identifies a command's input files by content, for its report, so that published tables can be
+// verified.
 #pragma once
 
 #include <filesystem>
@@ -10,13 +10,13 @@
 
 namespace patina::cli {
 
-// A list of {"path", "sha256"}, or {"path", "digest"} of a folder of pictures, in which names and
-// sizes count. Of a workspace its workspace.json and its journal, which hold the hashes of the
-// rest; of a scan folder each of its files and its frames. What is no file, such as standard input,
-// has the SHA-256 null; what does not exist is left out.
+// Returns a list of {"path", "sha256"}, or {"path", "digest"} for a folder of pictures, which
+// covers names and sizes. A workspace gives its workspace.json and journal, which contain the other
+// hashes; a scan folder gives each of its files and its frames. Inputs that are not files, such as
+// standard input, have the SHA-256 null; missing files are left out.
 Json describeInputs(const std::vector<std::filesystem::path>& paths);
 
-// The file or folder in "replay:SCAN" or "SCAN"; none in "camera:0", "stream:PIPE" and the like.
+// File or folder in "replay:SCAN" or "SCAN"; none in "camera:0", "stream:PIPE" and similar sources.
 std::vector<std::filesystem::path> filesOfSource(const std::string& source);
 
 } // namespace patina::cli

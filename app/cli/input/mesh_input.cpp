@@ -12,4 +12,22 @@ ScaledMesh readScaledMesh(const std::filesystem::path& path, MeshUnit unit, Cons
   return scaled;
 }
 
+Argument unitOfMesh(MeshUnit& unit) {
+  return {"--unit",
+          "UNIT",
+          "",
+          "mm",
+          "Of the mesh: mm, cm, m, in or fit.",
+          parsedInto(unit, parseMeshUnit)};
+}
+
+Argument tipRadius(std::optional<double>& radius, const std::string& fallback) {
+  return {"--tip-radius",
+          "LENGTH",
+          "m",
+          fallback,
+          "Of the probe: its middle stays that far off.",
+          numberInto(0, 1, radius, NumberKind::length)};
+}
+
 } // namespace patina::cli

@@ -1,12 +1,12 @@
 #include "app/cli/input/scan_input.h"
 
-#include "acquisition/sources/sources.h"
 #include "core/error.h"
+#include "scan/track_scan.h"
 
 namespace patina::cli {
 
-std::filesystem::path besideFrames(const std::filesystem::path& named, const std::string& option,
-                                   const std::string& name, const std::string& frames) {
+std::filesystem::path scanFile(const std::filesystem::path& named, const std::string& option,
+                               const std::string& name, const std::string& frames) {
   if (!named.empty()) return named;
   if (const auto folder = scanFolderOf(frames)) return *folder / name;
   if (!frames.starts_with("camera:") && !std::filesystem::exists(frames))

@@ -1,4 +1,4 @@
-// The files of a scan that commands read.
+// Finds the files of a scan.
 #pragma once
 
 #include <filesystem>
@@ -6,9 +6,9 @@
 
 namespace patina::cli {
 
-// The one that `option` named, or that of `name` in the folder of FRAMES. Throws Error where
-// neither is: a camera or a video has none.
-std::filesystem::path besideFrames(const std::filesystem::path& named, const std::string& option,
-                                   const std::string& name, const std::string& frames);
+// Returns the file given by `option`, or the one called `name` in the folder of FRAMES. Throws
+// Error if neither exists; a camera or a video has no folder.
+std::filesystem::path scanFile(const std::filesystem::path& named, const std::string& option,
+                               const std::string& name, const std::string& frames);
 
 } // namespace patina::cli

@@ -6,14 +6,14 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "scene/scene_values.h"
-#include "session/build/compile_warnings.h"
+#include "session/compile/compile_warnings.h"
 #include "workspace/texture_file.h"
 
 namespace patina::cli {
 
 namespace {
 
-// A scene in which nothing but the key itself can be wrong.
+// Scene in which only the key itself can be invalid.
 Scene trialFor(const std::string& key) {
   Scene trial;
   if (key == "resolution") trial.field.band = 2;
@@ -29,12 +29,12 @@ std::string optionFor(std::string key) {
 
 Argument setting(SceneOptions& options, const SettingEntry& entry) {
   const SceneKey& known = sceneKey(entry.key);
-  // Of what is counted the caption tells what.
+  // The caption of a counted value contains its unit.
   const bool counted = known.unit == "cells" || known.unit == "voxels" || known.unit == "samples";
   return {entry.option.empty() ? optionFor(entry.key) : entry.option,
           entry.value,
           counted ? "" : std::string(known.unit),
-          entry.usual.value_or(known.usual == "none" ? "" : known.usual),
+          entry.usual.value_or(known.default_value == "none" ? "" : known.default_value),
           entry.caption,
           [&options, key = entry.key](const std::string& text) {
             Scene trial = trialFor(key);
@@ -52,7 +52,7 @@ void addTexture(const std::string& text, TextureTable& textures) {
     throw Error("'" + text + "' is not ID=T.json");
   const std::string file = text.substr(equals + 1);
   try {
-    textures[static_cast<std::int32_t>(*number)] = feltTexture(readTexture(file));
+    textures[static_cast<std::int32_t>(*number)] = hapticTexture(readTexture(file));
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
@@ -145,7 +145,7 @@ void addHapticOptions(Command& command, SceneOptions& options) {
 
 void applySettings(Scene& scene, const Settings& settings) {
   Settings ordered = settings;
-  // Each of the two takes the other's place, but the voxel is what was said beside a resolution.
+  // Resolution and voxel replace each other; a voxel given beside a resolution wins.
   std::ranges::stable_partition(ordered,
                                 [](const auto& setting) { return setting.first != "voxel"; });
   setValues(scene, ordered);
@@ -171,7 +171,7 @@ int paintSizeOf(const Settings& settings, int before) {
 
 namespace {
 
-// What a setting needs so that anything comes of it.
+// Warns of settings without a condition for their effect.
 void warnOfNoEffect(const Scene& scene, const SceneOptions& options, Console& console) {
   const HapticProperties& haptics = scene.haptics;
   const auto given = [&](std::string_view key) {
@@ -186,7 +186,7 @@ void warnOfNoEffect(const Scene& scene, const SceneOptions& options, Console& co
       return object.paint && (*object.paint).*member;
     });
   };
-  const bool painted = some(&ObjectPaint::material); // with any channel
+  const bool painted = some(&ObjectPaint::material); // any channel
   needs("damping.cutoff", painted || haptics.damping, "--damping");
   const bool rubs = haptics.friction && haptics.friction->static_coefficient > 0;
   for (const char* key : {"friction.depth", "friction.slip"})

@@ -1,5 +1,4 @@
-// The options with which a mesh, workspace or volume becomes a scene; the same words in every
-// command.
+// Options that turn a mesh, workspace or volume into a scene, equal in all commands.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/cli/commands/command.h"
-#include "session/build/compile_scene.h"
-#include "session/build/session.h"
+#include "app/cli/framework/command.h"
+#include "session/compile/compile_scene.h"
+#include "session/open/session.h"
 
 namespace patina::cli {
 
@@ -23,12 +22,11 @@ struct SceneOptions {
   TextureTable textures{};
 };
 
-// An option that stands for a key of the scene: the scene says what is allowed, in which unit, and
-// what holds without it.
+// Option for a key of the scene, which defines its range, unit and default.
 struct SettingEntry {
   std::string key, value, caption;       // "friction.static", "MU", ...
-  std::optional<std::string> usual = {}; // where the command's differs from the scene's
-  std::string option = {};               // where it is not the key's name: "--mass"
+  std::optional<std::string> usual = {}; // if the command's default differs
+  std::string option = {};               // if it is not the key's name: "--mass"
 };
 void addSettings(Command& command, SceneOptions& options, const std::vector<SettingEntry>& entries);
 // --unit and --iso.
@@ -42,20 +40,21 @@ void addSampledFieldOptions(Command& command, SceneOptions& options);
 // --stiffness --damping --friction-... --tip-radius --force-limit.
 void addHapticOptions(Command& command, SceneOptions& options);
 
-// All of them or, with an Error, none. Their order matters only where they contradict one another.
+// Applies all settings or, with an Error, none. Their order matters only for contradictions.
 void applySettings(Scene& scene, const Settings& settings);
 
-// Whether they leave a scene with a tip radius above zero.
+// Returns true if the settings give a tip radius above zero.
 bool setsTipRadius(const Settings& settings);
-// Returns the paint.size that the settings leave; `before` where they do not name it.
+// Returns the paint.size of the settings, or `before` if they have none.
 int paintSizeOf(const Settings& settings, int before);
 
-// Opens, warns, and applies the settings. Throws FileError or Error; see openScene().
+// Opens a scene, prints warnings and applies the settings. Throws FileError or Error; see
+// openScene().
 OpenedScene openedWith(const std::filesystem::path& path, const SceneOptions& options,
                        Console& console);
 Scene openWith(const std::filesystem::path& path, const SceneOptions& options, Console& console);
-// compile(), with what should be known of the result as warnings.
+// Calls compile() and prints its warnings.
 std::shared_ptr<const CompiledScene> compileFor(Scene scene, Console& console,
-                                                FaceLayer faces = FaceLayer::if_read);
+                                                FaceLayer faces = FaceLayer::on_demand);
 
 } // namespace patina::cli

@@ -1,4 +1,4 @@
-// A recorded tip as a table with t [s], x [m], y [m], z [m].
+// Recorded tip path from a table with t [s], x [m], y [m], z [m].
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,8 @@
 
 namespace patina::cli {
 
-// Throws FileError with the line: wrong header, a bad number, time that does not increase, no row.
+// Throws FileError with the line: wrong header, invalid number, time that does not increase, no
+// row.
 class TipPathReader {
  public:
   explicit TipPathReader(const std::filesystem::path& path);

@@ -21,7 +21,7 @@ const char* const kExitCodes[] = {
     "130  cancelled (Ctrl-C, SIGTERM, SIGHUP); no file was touched (what runs until then: 0)",
 };
 
-using Lines = std::vector<std::pair<std::string, std::string>>; // a name, and what it is
+using Lines = std::vector<std::pair<std::string, std::string>>; // name and caption
 
 std::vector<std::string> paragraphs(const std::string& text) {
   std::vector<std::string> lines;
@@ -41,14 +41,14 @@ std::string inBrackets(const std::string& text) {
   return text.empty() ? "" : " [" + text + "]";
 }
 
-// Not the one within a file's name.
+// Skips full stops inside file names.
 std::size_t firstStop(const std::string& text) {
   for (std::size_t at = 0; (at = text.find_first_of(".;:", at)) != std::string::npos; ++at)
     if (at + 1 == text.size() || text[at + 1] == ' ') return at;
   return text.size();
 }
 
-// The unit stands before the caption's full stop.
+// Puts the unit before the caption's full stop.
 std::string textOf(const Argument& argument) {
   std::string text = argument.caption;
   if (!argument.unit.empty()) text.insert(firstStop(text), inBrackets(argument.unit));
@@ -65,7 +65,7 @@ std::string textOf(const Key& key) {
   std::vector<std::string> parts;
   for (const Key& part : key.parts)
     parts.push_back(nameOf(part) + (part.about.empty() ? "" : ": " + part.about));
-  std::string plain = key.name; // what only says the name again is left out
+  std::string plain = key.name; // a caption that repeats the name is left out
   std::ranges::replace(plain, '_', ' ');
   const std::string text = key.about.empty()      ? key.caption
                            : key.caption == plain ? key.about

@@ -88,7 +88,7 @@ std::string spreadText(const Percentiles& p, const std::string& unit) {
 
 namespace {
 
-// "800" of stiffness is "800 N/m".
+// "800" of stiffness becomes "800 N/m".
 std::string withUnit(const std::string& key, const std::string& value) {
   const std::string_view unit = sceneKey(key).unit;
   if (unit.empty() || !parseNumber(value)) return value;
@@ -141,7 +141,7 @@ Json jsonOf(const std::vector<std::string>& words) {
   return list;
 }
 
-// The workspace whose own file it is, not one that somebody has put beside them; empty: of none.
+// Returns the workspace that the file is part of; empty for other files, also inside its folder.
 static std::filesystem::path workspaceOf(const std::filesystem::path& file) {
   namespace fs = std::filesystem;
   if (!fs::exists(file)) return {};
@@ -158,7 +158,7 @@ void requireWritable(const std::filesystem::path& path,
                      std::optional<FileKind> kind) {
   const OutputTarget target = outputTarget(path);
   for (const std::filesystem::path& input : inputs) {
-    std::error_code unknown; // one that does not exist is not the other
+    std::error_code unknown; // a missing file is not the same
     if (!target.is_stream && std::filesystem::equivalent(target.path, input, unknown))
       throw FileError(path.string(), 0, "cannot be written: it is an input of this command");
   }
@@ -178,7 +178,7 @@ void requireWritable(const std::filesystem::path& path,
 bool areOne(const std::filesystem::path& a, const std::filesystem::path& b) {
   namespace fs = std::filesystem;
   std::error_code unknown;
-  const auto end = [](const fs::path& path) { // also of a link whose end is not there yet
+  const auto end = [](const fs::path& path) { // resolves links, also to a missing file
     return fs::weakly_canonical(fs::absolute(outputTarget(path).path));
   };
   return end(a) == end(b) || fs::equivalent(a, b, unknown);

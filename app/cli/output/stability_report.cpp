@@ -21,7 +21,7 @@ double share(std::size_t count, const StabilityMap& map) {
   return static_cast<double>(count) / static_cast<double>(map.ratio.size());
 }
 
-// Small ratios are what the map is for: 0.00042, not 0.000.
+// Small ratios matter most: 0.00042, not 0.000.
 std::string ratioText(double ratio) {
   if (ratio >= 0.9995) return rounded(ratio);
   char text[32];
@@ -73,11 +73,12 @@ Report stabilityReport(const SurfaceStability& stability, const Scene& scene) {
   report.set("ratio_min", map.worst_ratio, where);
   report.set("at", vectorJson(at)).set("ratio_median", middle);
   report.set("buzzing", share(map.buzzing, map));
-  report.set("slipping", share(map.slipping, map),
-             percent(map.slipping) +
+  report.set("slipping", share(map.unstable_count, map),
+             percent(map.unstable_count) +
                  ": a light grip does not hold the tip there; judged as a plane");
-  report.set("jumping", share(map.jumping, map), percent(map.jumping) + ": the force jumps; dark");
-  report.set("limit", map.limits.plain).set("limit_damped", map.limits.damped);
+  report.set("jumping", share(map.discontinuous_count, map),
+             percent(map.discontinuous_count) + ": the force jumps; dark");
+  report.set("limit", map.limits.device_only).set("limit_damped", map.limits.damped);
   report.set("device_given", scene.device_model.has_value(), deviceText(scene));
   report.set("coupled", map.limits.coupled(), "on: the map is of the coupled loop");
   return report;

@@ -1,15 +1,15 @@
-// The stability map in the words of render, export and info.
+// Stability part of the reports of render, export and info.
 #pragma once
 
 #include "app/cli/output/reports.h"
-#include "session/build/surface_stability.h"
+#include "session/open/surface_stability.h"
 
 namespace patina::cli {
 
-// For commands that were asked for it: Error where there is none.
+// Throws Error if there is no stability map.
 SurfaceStability requiredStability(const CompiledScene& compiled, Progress& progress);
 
-// Fractions are of the vertices; see StabilityMap.
+// Fractions of the vertices; see StabilityMap.
 const Keys& stabilityKeys();
 Report stabilityReport(const SurfaceStability& stability, const Scene& scene);
 

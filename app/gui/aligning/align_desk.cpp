@@ -2,51 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "acquisition/registration/first_guess.h"
 #include "app/gui/aligning/fit_words.h"
+#include "app/gui/toolkit/words.h"
 #include "visualization/layers/scale_layer.h"
 
 namespace patina {
 namespace {
 
-constexpr std::size_t kFewest = 3; // samples that can be laid
-constexpr double kFinest = 1e-3;   // of the colours' scale [mm]
-constexpr int kSettle = 350;       // after its last change a value is a step [ms]
-constexpr double kLongest = 0.06;  // of the mesh, that lines are stretched to
-constexpr double kNoLine = 1e-9;   // [m]: shorter is rounding
+constexpr std::size_t kMinSamples = 3; // Smallest number of samples that can be aligned.
+constexpr double kMinColorSpan = 1e-3; // Smallest span of the colour scale [mm].
+constexpr int kMoveEndDelay = 350;     // Time without a change that ends a move [ms].
+constexpr double kMaxLineShare = 0.06; // Length of the longest line, as a fraction of the mesh.
+constexpr double kNoLine = 1e-9;       // Shorter lines are rounding [m].
 
 } // namespace
 
 AlignDesk::AlignDesk(QWidget& window)
-    : QObject(&window), fit_job_(this), picking_(alignment_), around_(alignment_),
+    : QObject(&window), fit_job_(this), picking_(alignment_), cost_profile_(alignment_),
       files_(window, alignment_, *panel_) {
-  settle_.setSingleShot(true);
-  connect(&settle_, &QTimer::timeout, this, [this] { settle(); });
-  connect(&files_, &AlignFiles::said, this, &AlignDesk::said);
+  pause_timer_.setSingleShot(true);
+  connect(&pause_timer_, &QTimer::timeout, this, [this] { finishMove(); });
+  connect(&files_, &AlignFiles::notified, this, &AlignDesk::notified);
   connect(&files_, &AlignFiles::opened, this,
           [this](const QString& name, const AlignedPath& path) { takePath(name, path, true); });
-  connect(&files_, &AlignFiles::kept, this, [this](const Pose& pose) { kept_ = pose; });
-  connect(panel_, &AlignPanel::storeAsked, this, [this] { files_.store(name_); });
-  connect(cells_, &AlignCells::dragBegun, this, [this] { held_ = alignment_.pose(); });
-  connect(cells_, &AlignCells::dragged, this, [this](const Pose& motion) { move(motion * held_); });
-  connect(cells_, &AlignCells::dropped, this, [this] { settle(); });
-  connect(cells_, &AlignCells::clicked, this, &AlignDesk::pick);
-  connect(cells_, &AlignCells::escaped, this, [this] { setPicking(false); });
-  connect(&around_, &AroundPlace::errorChanged, this, &AlignDesk::drawMap);
+  connect(&files_, &AlignFiles::saved, this, [this](const Pose& pose) { saved_pose_ = pose; });
+  connect(panel_, &AlignPanel::storeRequested, this, [this] { files_.store(name_); });
+  connect(central_views_, &AlignCentralViews::dragStarted, this,
+          [this] { drag_start_ = alignment_.pose(); });
+  connect(central_views_, &AlignCentralViews::dragged, this,
+          [this](const Pose& motion) { move(motion * drag_start_); });
+  connect(central_views_, &AlignCentralViews::dropped, this, [this] { finishMove(); });
+  connect(central_views_, &AlignCentralViews::clicked, this, &AlignDesk::pick);
+  connect(central_views_, &AlignCentralViews::pointed, this,
+          [this](const std::optional<Ray>& sight, double reach) {
+            const bool reads = sight && alignment_.isReady();
+            emit underPointer(reads ? probeWords(*sight, reach) : QString());
+          });
+  connect(central_views_, &AlignCentralViews::escaped, this, [this] { setPicking(false); });
+  connect(&cost_profile_, &CostProfileJob::errorChanged, this, &AlignDesk::drawMap);
   connect(panel_, &AlignPanel::edited, this, [this](const PoseValues& values) {
     if (!alignment_.isReady() || work_) return;
     alignment_.setPose(poseOf(values));
-    around_.forget();
+    cost_profile_.reset();
     stale_ = true;
-    settle_.start(kSettle);
+    pause_timer_.start(kMoveEndDelay);
   });
   connect(panel_, &AlignPanel::pickToggled, this, &AlignDesk::setPicking);
-  connect(panel_, &AlignPanel::fitAsked, this, &AlignDesk::registerFromHere);
-  connect(panel_, &AlignPanel::beginAsked, this, [this] {
-    move(middleOnMiddle(alignment_.target()->mesh(), alignment_.points()));
-    settle();
+  connect(panel_, &AlignPanel::fitRequested, this, &AlignDesk::registerFromHere);
+  connect(panel_, &AlignPanel::beginRequested, this, [this] {
+    move(alignCenters(alignment_.target()->mesh(), alignment_.points()));
+    finishMove();
   });
   connect(&fit_job_, &Background::progressed, this, [this](double fraction, const QString&) {
     if (!work_) return;
@@ -62,44 +69,40 @@ AlignDesk::AlignDesk(QWidget& window)
 }
 
 std::map<Panel, QWidget*> AlignDesk::panels() const {
-  return {{Panel::align, panel_}, {Panel::basin, around_.plot()}};
+  return {{Panel::align, panel_}, {Panel::cost_profile, cost_profile_.panel()}};
 }
 
 void AlignDesk::setPath(const QString& name, const AlignedPath& aligned) {
   std::vector<PathSample> path = inContact(aligned.path);
-  if (path.size() < kFewest) {
-    emit said({tr("%1 has fewer than three samples in contact").arg(name), true});
+  if (path.size() < kMinSamples) {
+    emit notified({tr("%1 has fewer than three samples in contact").arg(name), true});
     return;
   }
   cancel();
   name_ = name;
-  alignment_.setPath(std::move(path));
+  alignment_.setPath(std::move(path), aligned.tip_radius);
   begin();
   if (!aligned.mesh_from_path || !alignment_.isReady()) return;
   move(*aligned.mesh_from_path);
-  settle();
-  kept_ = alignment_.pose();
+  finishMove();
+  saved_pose_ = alignment_.pose();
 }
 
-void AlignDesk::takePath(const QString& name, const AlignedPath& aligned, bool asks) {
-  if (!asks) return setPath(name, aligned);
+void AlignDesk::takePath(const QString& name, const AlignedPath& aligned, bool is_interactive) {
+  if (!is_interactive) return setPath(name, aligned);
   const bool stands = offered_.has_value();
   offered_ = {name, aligned};
-  if (stands) return; // the question is about this one from now on
-  const bool replaces = inContact(aligned.path).size() >= kFewest;
-  const bool goes_on = replaces && !settlePlacement();
+  if (stands) return; // The open question is now about this path.
+  const bool replaces = inContact(aligned.path).size() >= kMinSamples;
+  const bool goes_on = replaces && !confirmPlacement();
   const auto [newest, path] = *std::exchange(offered_, std::nullopt);
   if (!goes_on) setPath(newest, path);
 }
 
-bool AlignDesk::isKept() const {
-  return !alignment_.isReady() || alignment_.pose().isApprox(kept_, 1e-12);
-}
-
-bool AlignDesk::settlePlacement() {
-  if (isKept()) return true;
-  return files_.askKept(
-      tr("Where %1 was laid onto the mesh is in no file and not in the workspace.").arg(name_));
+bool AlignDesk::confirmPlacement() {
+  if (isSaved()) return true;
+  return files_.confirmDiscard(
+      tr("The pose of %1 on the mesh is neither in a file nor in the workspace.").arg(name_));
 }
 
 void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
@@ -110,33 +113,33 @@ void AlignDesk::setSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
 }
 
 void AlignDesk::changeSceneMesh(std::shared_ptr<const TriangleMesh> mesh) {
-  if (mesh == alignment_.mesh()) return; // a fit is still of it
+  if (mesh == alignment_.mesh()) return; // A fit of this mesh stays valid.
   if (alignment_.steps().empty()) return setSceneMesh(std::move(mesh));
   cancel();
   alignment_.changeMesh(std::move(mesh));
-  showAnew();
+  showNew();
 }
 
 void AlignDesk::begin() {
-  settle_.stop();
-  kept_ = alignment_.pose();
+  pause_timer_.stop();
+  saved_pose_ = alignment_.pose();
   panel_->setPath(name_, alignment_.path().size());
-  showAnew();
-  if (alignment_.isReady()) cells_->fit();
+  showNew();
+  if (alignment_.isReady()) central_views_->fit();
 }
 
-void AlignDesk::showAnew() {
+void AlignDesk::showNew() {
   setPicking(false);
   panel_->setReady(alignment_.isReady(), false);
   panel_->setFit({});
   if (alignment_.isReady()) {
-    cells_->showMesh(std::make_shared<const TriangleMesh>(alignment_.target()->mesh()));
+    central_views_->showMesh(std::make_shared<const TriangleMesh>(alignment_.target()->mesh()));
     reach_ =
         1.5 * alignment_.target()->extent() + alignment_.pose().translation().cwiseAbs().maxCoeff();
     draw();
-    around_.look();
+    cost_profile_.start();
   } else {
-    cells_->showMissing(!alignment_.path().empty());
+    central_views_->showMissing(!alignment_.path().empty());
   }
   emit changed();
 }
@@ -144,14 +147,14 @@ void AlignDesk::showAnew() {
 void AlignDesk::move(const Pose& pose) {
   if (!alignment_.isReady() || work_) return;
   alignment_.setPose(pose);
-  settle_.stop();
-  around_.forget();
+  pause_timer_.stop();
+  cost_profile_.reset();
   draw();
 }
 
-void AlignDesk::settle(std::optional<Registration> fit) {
+void AlignDesk::finishMove(std::optional<Registration> fit) {
   if (!alignment_.isReady() || work_) return;
-  settle_.stop();
+  pause_timer_.stop();
   alignment_.commit(std::move(fit));
   showPlace();
 }
@@ -160,19 +163,13 @@ void AlignDesk::showPlace() {
   const std::optional<Registration>& found = alignment_.found();
   panel_->setFit(found ? fitWords(*found) : QString());
   draw();
-  around_.look();
+  cost_profile_.start();
   emit changed();
 }
 
-void AlignDesk::undo() {
-  if (work_ || !alignment_.isReady() || !alignment_.undo()) return;
-  settle_.stop();
-  showPlace();
-}
-
-void AlignDesk::redo() {
-  if (work_ || !alignment_.isReady() || !alignment_.redo()) return;
-  settle_.stop();
+void AlignDesk::stepTo(bool (Alignment::*step)()) {
+  if (work_ || !alignment_.isReady() || !(alignment_.*step)()) return;
+  pause_timer_.stop();
   showPlace();
 }
 
@@ -181,75 +178,86 @@ void AlignDesk::draw() {
   const Pose& pose = alignment_.pose();
   const Residuals off = residualsOf(*alignment_.target(), alignment_.points(), pose);
   panel_->setResiduals(off);
-  if (!settle_.isActive()) panel_->setValues(valuesOf(pose), reach_);
+  if (!pause_timer_.isActive()) panel_->setValues(valuesOf(pose), reach_);
   DrawnPath path;
   path.title = tr("distance [mm]").toStdString();
-  path.through = true;
-  path.least_span = kFinest;
+  path.show_through = true;
+  path.min_span = kMinColorSpan;
+  path.scale = colors_;
+  if (colors_.range)
+    path.scale.range = ValueRange{1e3 * colors_.range->low, 1e3 * colors_.range->high};
   double longest = 0;
   const auto add = [&](const Vec3& at, double distance, const Vec3& foot) {
     path.samples.push_back({static_cast<double>(path.samples.size()), at, 1e3 * std::abs(distance),
                             false, false, foot});
     longest = std::max(longest, (at - foot).norm());
   };
-  if (const std::optional<Registration>& found = alignment_.found()) { // by its own numbers
-    for (std::size_t i = 0; i < found->misses.size(); ++i)
-      if (found->counts[i])
-        add(pose * alignment_.path()[i].position, found->misses[i].distance, found->misses[i].at);
+  if (const std::optional<Registration>& found = alignment_.found()) {
+    for (std::size_t i = 0; i < found->residuals.size(); ++i)
+      if (found->inliers[i])
+        add(pose * alignment_.path()[i].position, found->residuals[i].distance,
+            found->residuals[i].at);
   } else {
     for (std::size_t i = 0; i < alignment_.points().size(); ++i)
       add(pose * alignment_.points()[i], off.distances[i], off.feet[i]);
   }
-  const double room = kLongest * alignment_.target()->extent();
+  const double room = kMaxLineShare * alignment_.target()->extent();
   const double stretch = longest > kNoLine ? std::max(1.0, roundLength(room / longest)) : 1;
   path.stretch = panel_->linesShown() ? stretch : 0;
   panel_->setStretch(path.stretch);
-  cells_->draw(std::move(path), picking_.marks(),
-               picking_.on() ? std::nullopt : std::optional(alignment_.middle()));
+  central_views_->draw(std::move(path), picking_.marks(),
+                       picking_.on() ? std::nullopt : std::optional(alignment_.centroid()));
+}
+
+void AlignDesk::setColors(const ColorScale& error) {
+  if (error == colors_) return;
+  colors_ = error;
+  if (!alignment_.isReady()) return;
+  draw();
+  drawMap();
 }
 
 void AlignDesk::drawMap() {
   std::vector<float> shown;
   if (panel_->mapShown())
-    for (const float error : around_.error()) shown.push_back(1e3F * error);
-  cells_->setMeshValues(shown);
+    for (const float error : cost_profile_.error()) shown.push_back(1e3F * error);
+  central_views_->setMeshValues(shown);
 }
 
 void AlignDesk::registerFromHere() {
   if (!alignment_.isReady() || work_) return;
   alignment_.commit();
-  settle_.stop();
+  pause_timer_.stop();
   setPicking(false);
   const QString title = tr("Fitting the path");
-  work_ = Work{title, title};
+  work_ = TaskProgress{title, title};
   panel_->setReady(true, true);
   emit changed();
   ScanRegistrationOptions options;
   if (alignment_.isLaidByHand()) options.guess = alignment_.pose();
-  fit_job_.start([this, options, path = alignment_.whole(), target = alignment_.target()](
-                     Progress& progress, const Background::Deliver& deliver) {
+  fit_job_.start([this, options, path = alignment_.whole(),
+                  target = alignment_.target()](Progress& progress, const Background::Post& post) {
     const auto rest = [this] {
       work_.reset();
       panel_->setReady(alignment_.isReady(), false);
     };
     try {
       const RegisteredScans scans = registerScans(*target, {path}, options, progress);
-      deliver(true, [this, rest, scans, found = scans.of(0)] {
+      post(true, [this, rest, scans, found = scans.of(0)] {
         rest();
         move(found.mesh_from_path);
-        settle(found);
-        for (const std::string& line : scans.warnings)
-          emit said({QString::fromStdString(line), true});
+        finishMove(found);
+        for (const std::string& line : scans.warnings) emit notified({shownText(line), true});
         for (const std::string& line : scans.doubts)
-          emit said({tr("The mesh: %1").arg(QString::fromStdString(line)), true});
-        emit fitted(!isDoubtful(found));
+          emit notified({tr("The mesh: %1").arg(shownText(line)), true});
+        emit fitted(!isUnreliable(found));
       });
     } catch (const std::exception& error) {
-      deliver(true, [this, rest, problem = QString::fromStdString(error.what())] {
+      post(true, [this, rest, problem = shownText(error.what())] {
         rest();
         panel_->setFit(problem);
         emit changed();
-        emit said({problem, true});
+        emit notified({problem, true});
         emit fitted(false);
       });
     }
@@ -258,7 +266,7 @@ void AlignDesk::registerFromHere() {
 
 void AlignDesk::cancel() {
   if (!work_) return;
-  fit_job_.silence();
+  fit_job_.discardResult();
   work_.reset();
   panel_->setReady(alignment_.isReady(), false);
   emit changed();
@@ -267,7 +275,7 @@ void AlignDesk::cancel() {
 
 void AlignDesk::setPicking(bool on) {
   picking_.set(on && alignment_.isReady() && !work_);
-  cells_->setPicking(picking_.on());
+  central_views_->setPicking(picking_.on());
   panel_->setPicking(picking_.words());
   if (alignment_.isReady()) draw();
 }
@@ -281,16 +289,53 @@ void AlignDesk::pick(const Ray& sight, double reach) {
   if (!pose) return;
   setPicking(false);
   move(*pose);
-  settle();
+  finishMove();
+}
+
+// The path lies in front of the mesh, as it is drawn through it.
+QString AlignDesk::probeWords(const Ray& sight, double reach) const {
+  const auto words = [](const QString& what, const Vec3& at, const QString& value) {
+    return QStringLiteral("%1 · %2, %3, %4 mm%5")
+        .arg(what)
+        .arg(shownAs(1e3 * at.x(), 3), 0, 'f', 3)
+        .arg(shownAs(1e3 * at.y(), 3), 0, 'f', 3)
+        .arg(shownAs(1e3 * at.z(), 3), 0, 'f', 3)
+        .arg(value);
+  };
+  const auto residual = [](double metres) {
+    return tr(" · residual %1 mm").arg(shownAs(1e3 * metres, 3), 0, 'f', 3);
+  };
+  double nearest = reach;
+  std::optional<Vec3> sample;
+  for (const Vec3& point : alignment_.points()) {
+    const Vec3 away = alignment_.pose() * point - sight.origin;
+    const double off = away.cross(sight.direction).norm();
+    if (off >= nearest) continue;
+    nearest = off;
+    sample = alignment_.pose() * point;
+  }
+  const SurfaceTarget& target = *alignment_.target();
+  if (sample) return words(tr("Path"), *sample, residual(target.residual(*sample).distance));
+  const auto hit = target.tree().firstHit(sight.origin, sight.direction, INFINITY);
+  if (!hit) return {};
+  const Vec3 at = sight.origin + hit->t * sight.direction;
+  const std::vector<float>& error = cost_profile_.error();
+  if (error.empty()) return words(tr("Mesh"), at, {});
+  double mean = 0;
+  const Triangle& face = target.mesh().triangles[static_cast<std::size_t>(hit->surface.face)];
+  for (std::size_t k = 0; k < 3; ++k)
+    mean += hit->surface.barycentric[static_cast<Eigen::Index>(k)] *
+            static_cast<double>(error[static_cast<std::size_t>(face[k])]);
+  return words(tr("Mesh"), at, std::isfinite(mean) ? residual(mean) : tr(" · no samples near"));
 }
 
 void AlignDesk::refresh() {
-  if (unseen_ && cells_->isVisible()) {
+  if (unseen_ && central_views_->isVisible()) {
     unseen_ = false;
     if (alignment_.path().empty()) files_.openFirstScan();
   }
   if (stale_) draw();
-  cells_->refresh();
+  central_views_->refresh();
 }
 
 } // namespace patina

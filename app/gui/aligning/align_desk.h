@@ -1,5 +1,5 @@
-// The desk on which a path is laid onto the mesh by hand: four views at once, six values, three
-// points, a fit from there; what it is off, live.
+// The desk on which a person aligns a path with the mesh: four views, six pose values, three point
+// pairs, a fit from the present pose. It shows the distances live.
 #pragma once
 
 #include <map>
@@ -8,75 +8,86 @@
 
 #include <QTimer>
 
-#include "app/gui/aligning/align_cells.h"
+#include "app/gui/aligning/align_central_views.h"
 #include "app/gui/aligning/align_files.h"
 #include "app/gui/aligning/align_panel.h"
-#include "app/gui/aligning/around_place.h"
-#include "app/gui/aligning/point_picking.h"
-#include "app/gui/window/window_state.h"
+#include "app/gui/state/window_state.h"
 
 namespace patina {
 
 class AlignDesk : public QObject {
   Q_OBJECT
  public:
-  explicit AlignDesk(QWidget& window); // to which it belongs
+  explicit AlignDesk(QWidget& window);
 
-  // To be laid out by the window.
-  AlignCells* cells() const { return cells_; }
+  AlignCentralViews* centralViews() const { return central_views_; }
   std::map<Panel, QWidget*> panels() const;
 
   AlignFiles& files() { return files_; }
   const Alignment& alignment() const { return alignment_; }
-  const QString& name() const { return name_; } // of the path
-  const std::optional<Work>& work() const { return work_; }
+  const QString& name() const { return name_; }
+  const std::optional<TaskProgress>& work() const { return work_; }
 
-  // Not yet told by contact. A path with fewer than three samples in contact changes nothing.
+  // The path may include samples in the air. Fewer than three in contact change nothing.
   void setPath(const QString& name, const AlignedPath& aligned);
-  void takePath(const QString& name, const AlignedPath& aligned, bool asks); // for a place unkept
-  // nullptr: no scene is open. Where no path is laid yet its first scan's is, once it is seen.
+  // The same; is_interactive: confirms first if an unsaved placement would be lost.
+  void takePath(const QString& name, const AlignedPath& aligned, bool is_interactive);
+  // nullptr: no scene is open. Opens the scene's first path once the desk is visible.
   void setSceneMesh(std::shared_ptr<const TriangleMesh> mesh);
-  void changeSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // the path stays where it lies
-  bool isKept() const;     // where the path lies, or nobody has laid it there
-  bool settlePlacement();  // kept or given up; false: the person goes on
-  void registerFromHere(); // from where a hand has put the path, or from nowhere
+  void changeSceneMesh(std::shared_ptr<const TriangleMesh> mesh); // Keeps the path's pose.
+  bool isSaved() const { // True if the pose is saved, or if the path was not moved.
+    return !alignment_.isReady() || alignment_.pose().isApprox(saved_pose_, 1e-12);
+  }
+  bool confirmPlacement();                       // Asks to save or discard; false: cancelled.
+  void setColors(const ColorScale& error);       // Colours of path and error map.
+  std::optional<ValueRange> shownRange() const { // Range of these colours [m]; nullopt: none.
+    const auto range = central_views_->valueRange();
+    return range ? std::optional(ValueRange{1e-3 * range->low, 1e-3 * range->high}) : std::nullopt;
+  }
+  void registerFromHere(); // Starts a fit from the present pose.
   void cancel();
-  void undo();
-  void redo();
-  void refresh(); // of every tick of the window
+  void undo() { stepTo(&Alignment::undo); }
+  void redo() { stepTo(&Alignment::redo); }
+  void refresh(); // Called on each tick of the window.
 
  signals:
   void changed();
-  void fitted(bool is_certain); // a fit has ended; false: by an error or a cancel, too
-  void said(const patina::Message& message);
+  void fitted(bool is_certain); // A fit has ended; false also after an error or a cancel.
+  void notified(const patina::Message& message);
+  void underPointer(const QString& words); // Empty: nothing.
 
  private:
-  void begin();                                      // another path or mesh
-  void showAnew();                                   // of which nothing is known yet
-  void move(const Pose& pose);                       // while a hand moves it
-  void settle(std::optional<Registration> fit = {}); // it has; nullopt: a hand has
-  void showPlace();                                  // of the step that is done
+  void begin();                // Resets everything for another path or mesh.
+  void showNew();              // Shows an alignment about which nothing is computed yet.
+  void move(const Pose& pose); // Moves the path during a drag.
+  // Commits the move as a step; nullopt: it was moved by hand.
+  void finishMove(std::optional<Registration> fit = {});
+  void stepTo(bool (Alignment::*step)());
+  void showPlace();
   void draw();
   void drawMap();
   void setPicking(bool on);
   void pick(const Ray& sight, double reach);
+  QString probeWords(const Ray& sight, double reach) const;
 
   Background fit_job_;
   Alignment alignment_;
   QString name_;
-  AlignCells* cells_ = new AlignCells;
+  AlignCentralViews* central_views_ = new AlignCentralViews;
   AlignPanel* panel_ = new AlignPanel;
   PointPicking picking_;
-  AroundPlace around_;
+  CostProfileJob cost_profile_;
   AlignFiles files_;
-  QTimer settle_;
-  std::optional<std::pair<QString, AlignedPath>> offered_; // while a question stands before it
-  double reach_ = 1;                                       // of the sliders [m]
-  Pose held_ = Pose::Identity();                           // as it was when a drag began
-  Pose kept_ = Pose::Identity(); // in a file or in the workspace, or the first
-  bool stale_ = false;           // moved since it was drawn
-  bool unseen_ = false;          // the scene, here
-  std::optional<Work> work_;
+  QTimer pause_timer_;
+  std::optional<std::pair<QString, AlignedPath>> offered_; // Waits for the answer to a question.
+  ColorScale colors_;
+  double reach_ = 1;                   // Range of the sliders [m].
+  Pose drag_start_ = Pose::Identity(); // Pose at the start of the drag.
+  // Last pose saved to a file or the workspace, or the first one.
+  Pose saved_pose_ = Pose::Identity();
+  bool stale_ = false;  // True if moved since the last drawing.
+  bool unseen_ = false; // True if this scene was not shown here yet.
+  std::optional<TaskProgress> work_;
 };
 
 } // namespace patina

@@ -4,70 +4,40 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
-#include "app/gui/panels/form.h"
 #include "app/gui/scanning/scan_path.h"
-#include "app/gui/widgets/elided_label.h"
-#include "app/gui/widgets/words.h"
+#include "app/gui/toolkit/elided_label.h"
+#include "app/gui/toolkit/form.h"
+#include "app/gui/toolkit/words.h"
 #include "core/numbers.h"
 
 namespace patina {
-namespace {
-
-QVBoxLayout* columnIn(QGroupBox* card) {
-  auto* column = new QVBoxLayout(card);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(6);
-  return column;
-}
-
-QPushButton* buttonIn(QVBoxLayout* column, const char* name, const QString& words,
-                      const QString& tip) {
-  auto* button = new QPushButton(words);
-  button->setObjectName(QString::fromUtf8(name));
-  button->setToolTip(tip);
-  column->addWidget(button);
-  return button;
-}
-
-QLabel* quietIn(QVBoxLayout* column, const char* name) {
-  auto* label = new QLabel;
-  label->setObjectName(QString::fromUtf8(name));
-  label->setWordWrap(true);
-  label->setProperty("quiet", true);
-  column->addWidget(label);
-  return label;
-}
-
-} // namespace
 
 AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
-  auto* all = new QVBoxLayout(this);
-  all->setContentsMargins(0, 0, 0, 0);
-  all->setSpacing(4);
+  auto* all = layoutIn<QVBoxLayout>(this, 4);
 
   auto* path = new QGroupBox(tr("Path"));
-  auto* column = columnIn(path);
-  path_ = new ElidedLabel(path);
-  path_->setObjectName(QStringLiteral("align_path"));
+  auto* column = layoutIn<QVBoxLayout>(path);
+  path_ = named(new ElidedLabel, "align_path");
   column->addWidget(path_);
-  buttonIn(column, "align_open", tr("Open path…"),
-           tr("A path.csv of a scan; a scan that is open on the desk Scan brings its own"));
-  connect(path->findChild<QPushButton*>(), &QPushButton::clicked, this, &AlignPanel::openAsked);
-  scans_ = new QComboBox(path);
-  scans_->setObjectName(QStringLiteral("align_scan"));
-  scans_->setToolTip(tr("Scans of the workspace that have a path; one that was laid onto the mesh "
-                        "lies where it was"));
+  addButton(column, "align_open", tr("Open path…"),
+            tr("A path.csv of a scan. The path of a scan that is open on the desk Scan is used "
+               "automatically."),
+            this, &AlignPanel::openRequested);
+  scans_ = named(new QComboBox, "align_scan",
+                 tr("Scans of the workspace that have a path, with their saved poses"));
   column->addWidget(scans_);
-  store_ = buttonIn(column, "align_store", tr("Put into workspace"),
-                    tr("The path and where it lies become part of the scene: saved with it, and "
-                       "undone like any edit"));
-  keep_ = buttonIn(column, "align_keep", tr("Keep…"),
-                   tr("Writes the path in the mesh's frame, and the pose beside it as a text file "
-                      "that `patina register --initial` reads"));
+  store_ = addButton(column, "align_store", tr("Put into workspace"),
+                     tr("Stores the path and its pose in the scene. They are saved with it and can "
+                        "be undone like any edit."),
+                     this, &AlignPanel::storeRequested);
+  keep_ = addButton(column, "align_keep", tr("Keep…"),
+                    tr("Writes the path in the mesh's frame, and the pose to a text file for "
+                       "`patina register --initial`"),
+                    this, &AlignPanel::keepRequested);
   all->addWidget(path);
 
   auto* place = new QGroupBox(tr("Place on the mesh"));
-  column = columnIn(place);
+  column = layoutIn<QVBoxLayout>(place);
   auto* form = new Form(place);
   constexpr const char* kNames[] = {"align_x", "align_y", "align_z",
                                     "align_a", "align_b", "align_c"};
@@ -76,54 +46,48 @@ AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
   for (std::size_t i = 0; i < 6; ++i) {
     const bool turns = i >= 3;
     const RowRange range = turns ? RowRange{-180, 180, 1, 2} : RowRange{-9999, 9999, 0.5, 2};
-    rows_[i] = form->addRow({kNames[i], words[i], turns ? QStringLiteral("°") : tr("mm"), range, 1,
+    rows_[i] =
+        form->addRow(RowSpec(kNames[i], words[i], turns ? QStringLiteral("°") : tr("mm"), range,
                              turns ? tr("About the mesh's fixed axes: first x, then y, then z")
-                                   : tr("Along the mesh's axis")},
-                            0, [this](double) { emit edited(values()); });
+                                   : tr("Along the mesh's axis")),
+                     0, [this](double) { emit edited(values()); });
   }
   column->addWidget(form);
-  pick_ = buttonIn(column, "align_pick", tr("Three points"),
-                   tr("Click a place on the path, then the same on the mesh, three times"));
+  pick_ = addButton(column, "align_pick", tr("Three points"),
+                    tr("Click a point on the path, then the same point on the mesh, three times"));
   pick_->setCheckable(true);
-  hint_ = quietIn(column, "align_hint");
-  fit_ = buttonIn(column, "align_fit", tr("Fit from here"),
-                  tr("Finds the nearest good fit by least squares, as `patina register` does"));
+  hint_ = addNote(column, "align_hint");
+  fit_ = addButton(column, "align_fit", tr("Fit from here"),
+                   tr("Finds the nearest good fit by least squares, as `patina register` does"),
+                   this, &AlignPanel::fitRequested);
   fit_->setDefault(true);
-  begin_ = buttonIn(column, "align_begin", tr("Middle on middle"),
-                    tr("As at the beginning; can be undone"));
+  begin_ = addButton(column, "align_begin", tr("Middle on middle"),
+                     tr("Moves the centre of the path to the centre of the mesh; can be undone"),
+                     this, &AlignPanel::beginRequested);
   all->addWidget(place);
   place_ = place;
 
   auto* error = new QGroupBox(tr("Distance from the surface"));
-  column = columnIn(error);
-  off_ = quietIn(column, "align_error");
-  off_->setProperty("quiet", false);
-  fit_words_ = quietIn(column, "align_found");
-  lines_ = new QCheckBox(error);
-  lines_->setObjectName(QStringLiteral("align_lines"));
-  lines_->setToolTip(
-      tr("From the surface towards each sample that counts, coloured by its distance; "
-         "short ones are drawn longer, by the number that stands here"));
-  map_ = new QCheckBox(tr("Error map"), error);
-  map_->setObjectName(QStringLiteral("align_map"));
-  map_->setToolTip(tr("The mean distance of the samples near each place of the mesh; grey where "
-                      "none came"));
-  for (QCheckBox* box : {lines_, map_}) {
-    column->addWidget(box);
+  column = layoutIn<QVBoxLayout>(error);
+  off_ = addNote(column, "align_error", "");
+  fit_words_ = addNote(column, "align_found");
+  lines_ = addButton<QCheckBox>(
+      column, "align_lines", {},
+      tr("Lines from the surface to the samples of the fit, coloured by distance. Short lines are "
+         "enlarged by the factor shown here."));
+  map_ = addButton<QCheckBox>(
+      column, "align_map", tr("Error map"),
+      tr("Mean distance of nearby samples, shown on the mesh. Grey: no samples."));
+  for (QCheckBox* box : {lines_, map_})
     connect(box, &QCheckBox::toggled, this, &AlignPanel::shownChanged);
-  }
   all->addWidget(error);
   error_ = error;
 
-  connect(store_, &QPushButton::clicked, this, &AlignPanel::storeAsked);
   connect(scans_, qOverload<int>(&QComboBox::activated), this, [this](int row) {
     if (row > 0) emit scanChosen(scans_->itemText(row));
     scans_->setCurrentIndex(0);
   });
-  connect(keep_, &QPushButton::clicked, this, &AlignPanel::keepAsked);
   connect(pick_, &QPushButton::toggled, this, &AlignPanel::pickToggled);
-  connect(fit_, &QPushButton::clicked, this, &AlignPanel::fitAsked);
-  connect(begin_, &QPushButton::clicked, this, &AlignPanel::beginAsked);
   setScans({});
   setPath({}, 0);
   setReady(false, false);
@@ -145,9 +109,9 @@ void AlignPanel::setScans(const QStringList& names) {
 }
 
 void AlignPanel::setPath(const QString& name, std::size_t samples) {
-  path_->setText(samples == 0 ? tr("No path is open")
-                              : tr("%1: %2 samples in contact")
-                                    .arg(name, QString::fromStdString(formatCount(samples))));
+  path_->setText(samples == 0
+                     ? tr("No path is open")
+                     : tr("%1: %2 samples in contact").arg(name, shownText(formatCount(samples))));
 }
 
 void AlignPanel::setReady(bool ready, bool works) {
@@ -155,10 +119,7 @@ void AlignPanel::setReady(bool ready, bool works) {
   error_->setVisible(ready);
   keep_->setVisible(ready);
   store_->setVisible(ready);
-  for (QWidget* each :
-       {static_cast<QWidget*>(pick_), static_cast<QWidget*>(fit_), static_cast<QWidget*>(begin_),
-        static_cast<QWidget*>(keep_), static_cast<QWidget*>(store_)})
-    each->setEnabled(!works);
+  for (QPushButton* each : {pick_, fit_, begin_, keep_, store_}) each->setEnabled(!works);
 }
 
 void AlignPanel::setValues(const PoseValues& values, double reach) {
@@ -170,9 +131,8 @@ void AlignPanel::setValues(const PoseValues& values, double reach) {
 }
 
 void AlignPanel::setResiduals(const Residuals& residuals) {
-  off_->setText(
-      tr("All samples: mean %1 · rms %2 · worst %3")
-          .arg(inWords(residuals.mean), inWords(residuals.rms), inWords(residuals.worst)));
+  say(off_, tr("All samples: mean %1 · rms %2 · worst %3")
+                .arg(inWords(residuals.mean), inWords(residuals.rms), inWords(residuals.worst)));
 }
 
 void AlignPanel::setStretch(double times) {
@@ -180,16 +140,10 @@ void AlignPanel::setStretch(double times) {
                             : tr("Lines to the surface"));
 }
 
-void AlignPanel::setFit(const QString& words) {
-  fit_words_->setText(words);
-  fit_words_->setVisible(!words.isEmpty());
-}
-
 void AlignPanel::setPicking(const QString& words) {
   const QSignalBlocker quiet(pick_);
   pick_->setChecked(!words.isEmpty());
-  hint_->setText(words);
-  hint_->setVisible(!words.isEmpty());
+  say(hint_, words);
 }
 
 } // namespace patina

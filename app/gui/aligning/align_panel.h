@@ -1,16 +1,14 @@
-// The card of the Align desk: which path, where it lies on the mesh, how far off it is.
+// The card of the Align desk: which path, its pose on the mesh, its distance from it.
 #pragma once
 
 #include <array>
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QLabel>
-#include <QPushButton>
-#include <QWidget>
 
 #include "app/gui/aligning/alignment.h"
-#include "app/gui/panels/value_row.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/value_row.h"
 #include "geometry/mesh/pose_values.h"
 
 namespace patina {
@@ -20,26 +18,26 @@ class AlignPanel : public QWidget {
  public:
   explicit AlignPanel(QWidget* parent = nullptr);
 
-  void setScans(const QStringList& names);                // of the scene, that have a path
-  void setPath(const QString& name, std::size_t samples); // 0: there is none
-  void setReady(bool ready, bool works);                  // there is something to align; or not now
-  void setValues(const PoseValues& values, double reach); // [m] that shifts may be
+  void setScans(const QStringList& names);                // Scans of the scene that have a path.
+  void setPath(const QString& name, std::size_t samples); // samples = 0: no path.
+  void setReady(bool ready, bool works); // ready: path and mesh are there. works: a fit is running.
+  void setValues(const PoseValues& values, double reach); // reach: limit of the shifts [m].
   void setResiduals(const Residuals& residuals);
   bool linesShown() const { return lines_->isChecked(); }
   bool mapShown() const { return map_->isChecked(); }
-  void setStretch(double times);         // of the lines; 0: there are none
-  void setFit(const QString& words);     // of a registration; empty: none
-  void setPicking(const QString& words); // what is to be clicked; empty: it is over
+  void setStretch(double times); // Factor of the lines' length; 0: no lines.
+  void setFit(const QString& words) { say(fit_words_, words); }
+  void setPicking(const QString& words); // The next place to click; empty: picking is over.
 
  signals:
-  void openAsked();
+  void openRequested();
   void edited(const patina::PoseValues& values);
   void pickToggled(bool on);
-  void fitAsked();
-  void beginAsked();
-  void keepAsked();
-  void storeAsked();
-  void shownChanged(); // lines or map
+  void fitRequested();
+  void beginRequested();
+  void keepRequested();
+  void storeRequested();
+  void shownChanged();
   void scanChosen(const QString& name);
 
  private:

@@ -9,9 +9,9 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kLooked = 400; // points, while a hand moves them
-constexpr std::size_t kMapped = 120; // while a basin is made
-constexpr int kAcross = 21;          // steps across a basin
+constexpr std::size_t kMaxLivePoints = 400;    // Points that are evaluated during a drag.
+constexpr std::size_t kMaxProfilePoints = 120; // Points that are evaluated for a cost profile.
+constexpr int kAcross = 21;                    // Steps across a cost profile.
 
 std::vector<Vec3> someOf(const std::vector<Vec3>& points, std::size_t count) {
   if (points.size() <= count) return points;
@@ -22,17 +22,6 @@ std::vector<Vec3> someOf(const std::vector<Vec3>& points, std::size_t count) {
 
 Vec3 middleOf(const std::vector<Vec3>& points) {
   return scaleOf(points, Pose::Identity()).centre;
-}
-
-double rmsOf(const SurfaceTarget& target, const std::vector<Vec3>& points, const Pose& pose) {
-  double squares = 0;
-  std::int32_t face = kNone;
-  for (const Vec3& point : points) {
-    const ClosestPoint near = target.tree().closestPoint(pose * point, face);
-    face = near.surface.face;
-    squares += near.distance * near.distance;
-  }
-  return std::sqrt(squares / static_cast<double>(points.size()));
 }
 
 } // namespace
@@ -57,36 +46,36 @@ Residuals residualsOf(const SurfaceTarget& target, const std::vector<Vec3>& poin
   return found;
 }
 
-Basin basinOf(const SurfaceTarget& target, const std::vector<Vec3>& points,
-              const Pose& mesh_from_path, Progress& progress) {
-  const std::vector<Vec3> some = someOf(points, kMapped);
-  Basin basin;
-  basin.shift = 0.15 * target.extent();
-  basin.turn = 0.35;
-  basin.side = kAcross;
+CostProfile costProfileAround(const SurfaceTarget& target, const std::vector<Vec3>& points,
+                              const Pose& mesh_from_path, Progress& progress) {
+  const std::vector<Vec3> some = someOf(points, kMaxProfilePoints);
+  CostProfile profile;
+  profile.shift = 0.15 * target.extent();
+  profile.turn = 0.35;
+  profile.side = kAcross;
   const Vec3 middle = mesh_from_path * middleOf(some);
   const auto part = [](int step) { return 2. * step / (kAcross - 1) - 1; };
   for (int axis = 0; axis < 3; ++axis)
     for (int step = 0; step < kAcross; ++step) {
       progress.throwIfCancelled();
       Pose shift = Pose::Identity(), turn = Pose::Identity();
-      shift.translation() = part(step) * basin.shift * Vec3::Unit(axis);
+      shift.translation() = part(step) * profile.shift * Vec3::Unit(axis);
       turn.linear() =
-          Eigen::AngleAxisd(part(step) * basin.turn, Vec3::Unit(axis)).toRotationMatrix();
+          Eigen::AngleAxisd(part(step) * profile.turn, Vec3::Unit(axis)).toRotationMatrix();
       turn.translation() = middle - turn.linear() * middle;
       const auto i = static_cast<std::size_t>(axis);
-      basin.along[i].push_back(rmsOf(target, some, shift * mesh_from_path));
-      basin.along[i + 3].push_back(rmsOf(target, some, turn * mesh_from_path));
+      profile.along[i].push_back(residualsOf(target, some, shift * mesh_from_path).rms);
+      profile.along[i + 3].push_back(residualsOf(target, some, turn * mesh_from_path).rms);
     }
   for (int row = 0; row < kAcross; ++row)
     for (int column = 0; column < kAcross; ++column) {
       progress.throwIfCancelled();
       Pose shift = Pose::Identity();
-      shift.translation() = basin.shift * (part(column) * Vec3::Unit(basin.first) +
-                                           part(row) * Vec3::Unit(basin.second));
-      basin.map.push_back(rmsOf(target, some, shift * mesh_from_path));
+      shift.translation() = profile.shift * (part(column) * Vec3::Unit(profile.first) +
+                                             part(row) * Vec3::Unit(profile.second));
+      profile.map.push_back(residualsOf(target, some, shift * mesh_from_path).rms);
     }
-  return basin;
+  return profile;
 }
 
 Registration registeredAt(const SurfaceTarget& target, const std::vector<PathSample>& path,
@@ -94,8 +83,8 @@ Registration registeredAt(const SurfaceTarget& target, const std::vector<PathSam
   Registration found;
   found.mesh_from_path = mesh_from_path;
   for (const PathSample& sample : path)
-    found.misses.push_back(target.miss(mesh_from_path * sample.position));
-  found.counts.assign(path.size(), true);
+    found.residuals.push_back(target.residual(mesh_from_path * sample.position));
+  found.inliers.assign(path.size(), true);
   return found;
 }
 
@@ -113,8 +102,10 @@ void Alignment::changeMesh(std::shared_ptr<const TriangleMesh> mesh) {
   makeTarget();
 }
 
-void Alignment::setPath(std::vector<PathSample> path) {
+void Alignment::setPath(std::vector<PathSample> path, double tip_radius) {
   whole_ = std::move(path);
+  if (tip_radius != tip_radius_) target_.reset();
+  tip_radius_ = tip_radius;
   begin();
 }
 
@@ -124,13 +115,13 @@ void Alignment::begin() {
   moved_ = false;
   path_ = whole_;
   makeTarget();
-  std::vector<std::string> unsaid; // the registration says it
-  if (target_) path_ = touchingOn(target_->mesh(), std::move(path_), unsaid);
+  std::vector<std::string> default_sigmas; // Unused here: the registration reports it.
+  if (target_) path_ = touchingOn(target_->mesh(), std::move(path_), default_sigmas);
   std::vector<Vec3> all;
   for (const PathSample& sample : path_) all.push_back(sample.position);
-  points_ = someOf(all, kLooked);
+  points_ = someOf(all, kMaxLivePoints);
   if (!isReady()) return;
-  pose_ = middleOnMiddle(target_->mesh(), points_);
+  pose_ = alignCenters(target_->mesh(), points_);
   steps_ = {{pose_, {}}};
 }
 
@@ -138,29 +129,16 @@ void Alignment::makeTarget() {
   if (path_.empty() || mesh_ == nullptr || target_ != nullptr) return;
   TriangleMesh clean = cleaned(*mesh_).mesh;
   if (!clean.triangles.empty())
-    target_ = std::make_shared<const SurfaceTarget>(std::move(clean), 0, true);
+    target_ = std::make_shared<const SurfaceTarget>(std::move(clean), tip_radius_, true);
 }
 
-Vec3 Alignment::middle() const {
+Vec3 Alignment::centroid() const {
   return pose_ * middleOf(points_);
 }
 
 const std::optional<Registration>& Alignment::found() const {
   static const std::optional<Registration> kNobody;
   return steps_.empty() || moved_ ? kNobody : steps_[at_].fit;
-}
-
-bool Alignment::isLaidByHand() const {
-  return !steps_.empty() && !found() && !pose_.isApprox(steps_[0].pose, 1e-12);
-}
-
-Registration Alignment::registration() const {
-  return found() ? *found() : registeredAt(*target_, path_, pose_);
-}
-
-void Alignment::setPose(const Pose& pose) {
-  moved_ = true;
-  pose_ = pose;
 }
 
 void Alignment::commit(std::optional<Registration> fit) {

@@ -1,14 +1,14 @@
-// What a fit says of itself, in a line for the panel.
+// Describes a fit in a line for the panel.
 #pragma once
 
 #include <QString>
 
-#include "acquisition/registration/register_path.h"
+#include "scan/register_scans.h"
 
 namespace patina {
 
-// Why the path may lie elsewhere; empty: it is sure.
-QString doubtWords(const Registration& found);
+// Returns why the pose may be wrong; empty: it is reliable.
+QString warningText(const Registration& found);
 QString fitWords(const Registration& found);
 
 } // namespace patina

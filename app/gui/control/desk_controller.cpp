@@ -1,6 +1,71 @@
 #include "app/gui/control/desk_controller.h"
 
+#include <QSettings>
+
 namespace patina {
+namespace {
+
+QString keyOf(Desk desk, const char* what) {
+  return QStringLiteral("desks/%1/%2").arg(QString::fromUtf8(rowOf(desk).name), what);
+}
+
+// Settings of another version of the program may be out of range.
+template <typename Value> Value read(const QString& key, Value usual, int low, int high) {
+  bool is_number = false;
+  const int kept = QSettings().value(key).toInt(&is_number);
+  return is_number && kept >= low && kept <= high ? static_cast<Value>(kept) : usual;
+}
+
+// Calls visit(name, value, smallest, largest) for each stored value.
+template <typename Layout, typename Visit> void forEachValue(Layout& layout, const Visit& visit) {
+  visit("tab", layout.tab, 0, static_cast<int>(tabRows().size()) - 1);
+  visit("page", layout.page, static_cast<int>(Panel::forces),
+        static_cast<int>(Panel::cost_profile));
+  visit("column", layout.side_panel, 300, 480);
+  visit("drawer", layout.bottom_panel, 60, 4000);
+  visit("column_folded", layout.side_panel_folded, 0, 1);
+  visit("drawer_folded", layout.bottom_panel_folded, 0, 1);
+}
+
+} // namespace
+
+DeskLayout usualLayout(Desk desk) {
+  const DeskRow& row = rowOf(desk);
+  return {row.tab, row.page, 300, row.bottom_panel, false, !row.bottom_panel_open};
+}
+
+DeskLayout rememberedLayout(Desk desk) {
+  DeskLayout layout = usualLayout(desk);
+  forEachValue(layout, [desk](const char* what, auto& value, int low, int high) {
+    value = read(keyOf(desk, what), value, low, high);
+  });
+  return layout;
+}
+
+void remember(Desk desk, const DeskLayout& layout) {
+  QSettings settings;
+  forEachValue(layout, [&](const char* what, const auto& value, int, int) {
+    settings.setValue(keyOf(desk, what), static_cast<int>(value));
+  });
+}
+
+WindowGeometry rememberedPlace() {
+  WindowGeometry place;
+  const QSize size = QSettings().value(QStringLiteral("window/size")).toSize();
+  if (size.isValid()) place.size = size.expandedTo({640, 480});
+  place.maximized = QSettings().value(QStringLiteral("window/maximized")).toBool();
+  const Desk desk =
+      read(QStringLiteral("window/desk"), place.desk, 0, static_cast<int>(Desk::align));
+  place.desk = desk;
+  return place;
+}
+
+void remember(const WindowGeometry& place) {
+  QSettings settings;
+  settings.setValue(QStringLiteral("window/size"), place.size);
+  settings.setValue(QStringLiteral("window/maximized"), place.maximized);
+  settings.setValue(QStringLiteral("window/desk"), static_cast<int>(place.desk));
+}
 
 DeskController::DeskController(const Parts& parts, QObject* parent)
     : QObject(parent), at_(parts), group_(new QActionGroup(this)) {
@@ -20,13 +85,13 @@ DeskController::DeskController(const Parts& parts, QObject* parent)
   connect(&at_.tools, &ToolBar::chosen, this, &DeskController::takeTool);
   for (QSplitter* splitter : {&at_.across, &at_.down})
     connect(splitter, &QSplitter::splitterMoved, this, &DeskController::takeSizes);
-  connect(&at_.column, &FoldingTabs::foldAsked, this, &DeskController::foldColumn);
-  connect(&at_.drawer, &FoldingTabs::foldAsked, this, &DeskController::foldDrawer);
-  connect(&at_.column, &FoldingTabs::chosen, this, [this](int tab) {
+  connect(&at_.side_panel, &FoldingTabs::foldRequested, this, &DeskController::foldSidePanel);
+  connect(&at_.bottom_panel, &FoldingTabs::foldRequested, this, &DeskController::foldBottomPanel);
+  connect(&at_.side_panel, &FoldingTabs::chosen, this, [this](int tab) {
     layouts_[desk_].tab = static_cast<Tab>(tab);
     emit changed();
   });
-  connect(&at_.drawer, &FoldingTabs::chosen, this, [this](int page) {
+  connect(&at_.bottom_panel, &FoldingTabs::chosen, this, [this](int page) {
     layouts_[desk_].page = static_cast<Panel>(page);
     emit changed();
   });
@@ -46,21 +111,29 @@ void DeskController::choose(Desk desk) {
 void DeskController::takeTool(const ToolChoice& tool) {
   tools_[deskFor(tool, desk_)] = tool;
   choose(deskFor(tool, desk_));
+  // The card of Measure and Pin comes in front, and the tab of before with another tool.
+  if (tool.handling == InteractionMode::measure || tool.handling == InteractionMode::pin) {
+    tab_before_.try_emplace(desk_, layouts_[desk_].tab);
+    open(Panel::measure);
+  } else if (const auto before = tab_before_.extract(desk_)) {
+    layouts_[desk_].tab = before.mapped();
+    emit changed();
+  }
 }
 
 void DeskController::open(Panel panel) {
   if (const auto tab = tabOf(panel)) {
     layouts_[desk_].tab = *tab;
-    foldColumn(false);
+    foldSidePanel(false);
   } else {
     layouts_[desk_].page = panel;
-    foldDrawer(false);
+    foldBottomPanel(false);
   }
 }
 
-void DeskController::foldColumn(bool folded) {
+void DeskController::foldSidePanel(bool folded) {
   if (!narrow_)
-    layouts_[desk_].column_folded = folded;
+    layouts_[desk_].side_panel_folded = folded;
   else if (folded)
     opened_.erase(desk_);
   else
@@ -69,8 +142,8 @@ void DeskController::foldColumn(bool folded) {
   emit changed();
 }
 
-void DeskController::foldDrawer(bool folded) {
-  layouts_[desk_].drawer_folded = folded;
+void DeskController::foldBottomPanel(bool folded) {
+  layouts_[desk_].bottom_panel_folded = folded;
   arrange();
   emit changed();
 }
@@ -78,26 +151,29 @@ void DeskController::foldDrawer(bool folded) {
 void DeskController::setNarrow(bool narrow) {
   if (narrow == narrow_) return;
   narrow_ = narrow;
-  opened_ = {Desk::texture}; // whose steps begin and go on by buttons there
+  opened_ = {Desk::texture}; // The steps there are started by buttons in the side panel.
   arrange();
 }
 
 void DeskController::arrange() {
   const DeskLayout& layout = layouts_[desk_];
-  at_.column.setFolded(narrow_ ? !opened_.contains(desk_) : layout.column_folded);
-  at_.drawer.setFolded(layout.drawer_folded);
-  at_.down.handle(1)->setEnabled(!at_.drawer.folded()); // it has one height then
-  const int wide = at_.column.folded() ? at_.column.maximumWidth() : layout.column;
-  const int high = at_.drawer.folded() ? at_.drawer.maximumHeight() : layout.drawer;
+  at_.side_panel.setFolded(narrow_ ? !opened_.contains(desk_) : layout.side_panel_folded);
+  at_.bottom_panel.setFolded(layout.bottom_panel_folded);
+  at_.down.handle(1)->setEnabled(!at_.bottom_panel.folded()); // A folded panel has a fixed height.
+  const int wide = at_.side_panel.folded() ? at_.side_panel.maximumWidth() : layout.side_panel;
+  const int high =
+      at_.bottom_panel.folded() ? at_.bottom_panel.maximumHeight() : layout.bottom_panel;
   at_.across.setSizes({at_.across.width() - at_.across.handleWidth() - wide, wide});
   at_.down.setSizes({at_.down.height() - at_.down.handleWidth() - high, high});
 }
 
 void DeskController::takeSizes() {
   DeskLayout& layout = layouts_[desk_];
-  // Hidden ones have a width that nobody gave them.
-  if (at_.column.isVisible() && !at_.column.folded()) layout.column = at_.column.width();
-  if (at_.drawer.isVisible() && !at_.drawer.folded()) layout.drawer = at_.drawer.height();
+  // A hidden panel has an arbitrary size.
+  if (at_.side_panel.isVisible() && !at_.side_panel.folded())
+    layout.side_panel = at_.side_panel.width();
+  if (at_.bottom_panel.isVisible() && !at_.bottom_panel.folded())
+    layout.bottom_panel = at_.bottom_panel.height();
 }
 
 void DeskController::restore() {
@@ -112,7 +188,7 @@ void DeskController::remember(const QWidget& window) const {
   if (!keeps_) return;
   const bool maximized = window.isMaximized();
   patina::remember(
-      WindowPlace{maximized ? window.normalGeometry().size() : window.size(), maximized, desk_});
+      WindowGeometry{maximized ? window.normalGeometry().size() : window.size(), maximized, desk_});
   for (const auto& [desk, layout] : layouts_) patina::remember(desk, layout);
 }
 

@@ -1,5 +1,4 @@
-// Edits what is open: asks the edit thread, hears what it did, and keeps the panels as the scene
-// is.
+// Sends edits of the open scene to the edit thread, receives the results and updates the panels.
 #pragma once
 
 #include <functional>
@@ -14,7 +13,7 @@
 #include "app/gui/panels/haptics_panel.h"
 #include "app/gui/panels/history_panel.h"
 #include "app/gui/panels/object_list.h"
-#include "app/gui/window/window_state.h"
+#include "app/gui/state/window_state.h"
 #include "session/edit/edit_thread.h"
 
 namespace patina {
@@ -29,47 +28,60 @@ class EditController : public QObject {
     ReliefPanel& relief;
     HistoryPanel& history;
   };
-  using Publish = std::function<void(const CompiledScene&)>; // called on the edit thread
-  EditController(const Parts& parts, Publish publish, QObject* parent);
+  using Publish = std::function<void(const CompiledScene&)>;   // called on the edit thread
+  using Ticks = std::function<void(std::vector<ToolSample>&)>; // the same; see EditThread::Spec
+  EditController(const Parts& parts, Publish publish, Ticks ticks, QObject* parent);
 
   EditThread& thread() { return thread_; }
-  const std::shared_ptr<const CompiledScene>& scene() const { return scene_; } // null: none
+  const std::shared_ptr<const CompiledScene>& scene() const { return scene_; } // nullptr: none.
   const EditStatus& status() const { return status_; }
-  std::optional<Work> work() const;         // that takes its time
-  bool unsaved() const { return unsaved_; } // also what was not asked for yet
+  std::optional<TaskProgress> work() const; // Progress of an edit that takes long.
+  bool unsaved() const { return unsaved_; } // Includes edits that are not sent yet.
   bool hasRelief() const { return has_relief_; }
 
-  // Asks for the values that panels have sent since the last time; of every window tick.
-  void tryValues();
+  // Sends the values that panels have changed; called on each tick of the window.
+  void previewValues();
+  void changeColors(const std::string& thing, const ColorScale& scale);
   void addObjects(const std::vector<SceneObject>& objects, EditThread::Done done);
-  void setTool(const ToolChoice& choice);
-  void showAgain(); // what is open, in the place of a preview
-  // Events go on until what is asked for is done; throws Error or Cancelled.
+  void setTool(const ToolChoice& choice) {
+    paints_relief_ = choice == ToolChoice{InteractionMode::paint, Tool::relief};
+    showRelief();
+  }
+  void showAgain() { // Shows the open scene again after a preview.
+    showScene({scene_, SceneChange::Step::again});
+  }
+  // Processes events until the edit is done. Throws Error or Cancelled.
   void waitFor(const std::function<void(EditThread::Done)>& ask);
-  void settle(); // waits for all that was asked for
+  void waitForEdits(); // Waits for all edits that were sent.
 
  signals:
   void sceneChanged(const patina::SceneChange& change);
   void changed();
-  void refused(const QString& problem); // the scene is as it was before
+  void refused(const QString& problem); // The scene is unchanged.
+  void colorsDone();                    // Once for each changeColors().
 
  private:
   void takeEvents();
-  void takeScene(std::shared_ptr<const CompiledScene> scene, bool anew);
+  void takeScene(std::shared_ptr<const CompiledScene> scene, bool is_new);
   void showScene(const SceneChange& change);
   void syncPanels();
-  void showRelief();
-  void applyObjects(); // as the panel has them
-  void setUnsaved(bool unsaved);
+  void showRelief() {
+    if (scene_ && (has_relief_ || paints_relief_)) at_.relief.show(scene_);
+  }
+  void applyObjects(); // Sends the panel's objects.
+  void setUnsaved(bool unsaved) {
+    unsaved_ = unsaved;
+    emit changed();
+  }
 
   Parts at_;
   std::shared_ptr<const CompiledScene> scene_;
   EditStatus status_;
   std::optional<EditProgress> progress_;
   bool unsaved_ = false, has_relief_ = false, paints_relief_ = false;
-  bool values_edited_ = false;               // and not yet asked for
-  int values_asked_ = 0, objects_asked_ = 0; // and not yet answered
-  EditThread thread_;                        // last: it reports to all of these
+  bool values_edited_ = false;                   // Changed and not sent yet.
+  int values_pending_ = 0, objects_pending_ = 0; // Sent and not answered yet.
+  EditThread thread_;                            // Must be last: it reports to the members above.
 };
 
 } // namespace patina

@@ -1,76 +1,120 @@
-// Feels what is open: the servo, what it says, and what is kept of that.
+// Runs the servo on the open scene, passes on its samples and records them.
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <QObject>
+#include <QString>
+#include <QTimer>
 
 #include "app/gui/panels/message_panel.h"
 #include "app/gui/servo/live_plots.h"
 #include "app/gui/servo/recording.h"
-#include "app/gui/servo/stability_job.h"
-#include "haptics/devices/device_mount.h"
-#include "haptics/devices/link/device_clock.h"
-#include "haptics/devices/link/link_notes.h"
+#include "app/gui/toolkit/background.h"
+#include "haptics/device/device_mount.h"
+#include "haptics/link/device_clock.h"
+#include "haptics/link/link_statistics.h"
 #include "haptics/servo/tip_servo.h"
 #include "scene/scene.h"
+#include "scene/tool_sample.h"
+#include "session/open/surface_stability.h"
 
 namespace patina {
+
+// Computes the stability map of the open scene in the background (MATH 2.1.7).
+class StabilityJob : public QObject {
+  Q_OBJECT
+ public:
+  explicit StabilityJob(QObject* parent = nullptr);
+
+  // Starts after a short delay and replaces earlier requests. nullptr: no map.
+  void request(std::shared_ptr<const CompiledScene> scene);
+  void cancel() {
+    timer_.stop();
+    jobs_.discardResult();
+  }
+
+ signals:
+  void notified(const QString& words); // Progress, or a summary of the map.
+  void done(std::shared_ptr<const patina::SurfaceStability> stability);
+
+ private:
+  void begin();
+
+  std::shared_ptr<const CompiledScene> scene_;
+  QTimer timer_;
+  Background jobs_{this};
+};
 
 class FeelController : public QObject {
   Q_OBJECT
  public:
   struct Parts {
-    QWidget& window; // which questions are asked over
+    QWidget& window; // Parent of dialogs.
     ForcePlot& force;
     EnergyPlot& energy;
   };
-  FeelController(const Parts& parts, QObject* parent);
-  ~FeelController() override;
+  FeelController(const Parts& parts, QObject* parent)
+      : QObject(parent), at_(parts), stability_(this) {}
+  ~FeelController() override { servo_.close(); }
 
   TipServo& servo() { return servo_; }
   StabilityJob& stability() { return stability_; }
-  // What the device's own thread tells; null for a device that has none. And what of it keeps the
-  // force back, in one line.
-  const LinkNotes* notes() const { return notes_.get(); }
-  const QString& heldBack() const { return held_back_; }
-  // By a person: none at all, or only while a button of the device is held.
-  void setForce(bool on);
-  void setNeedsButton(bool on);
-  const ToolSample& sample() const { return sample_; } // the last one
+  // Why the device gives no force, in one line; empty: it does.
+  const QString& inhibitText() const { return held_back_; }
+  // User settings: force off, or only while a button of the device is held.
+  void setForce(bool on) { controls_->enabled = on; }
+  void setNeedsButton(bool on) {
+    needs_button_ = on;
+    if (notes_) notes_->requires_deadman = on;
+  }
+  const ToolSample& sample() const { return sample_; }
   void open(const Scene& scene, const Vec3& start);
-  void place(const Scene& scene, const Vec3& tip); // there, as if it had never been elsewhere
-  void close();                                    // and nothing that the servo said is lost
-  void look();    // at the device, which gives no force to one that nobody watches
-  void collect(); // what it has said since the last time; of every window tick
+  void place(const Scene& scene, const Vec3& tip); // Moves the tip without a path between.
+  void close(); // Samples that are still queued are collected first.
+  // Shows why there is no force. Must be called regularly, or the device stops the force.
+  void checkDevice();
+  void collect(); // Takes the new samples; called on each tick of the window.
 
   bool recording() const { return recording_.on(); }
-  double recordedSeconds() const { return recording_.seconds(); }
-  void toggleRecording(); // begins, or ends and is saved
-  bool settleRecording(); // saved or dropped; false: the person goes on
-  void startLog();        // a recording of its own
-  Recording& log();       // up to this tick
+  double recordedSeconds() const { return recording_.log() ? recording_.log()->seconds() : 0; }
+  void toggleRecording();  // Starts, or stops and saves.
+  bool confirmRecording(); // Asks to save or discard; false: cancelled.
+  void keepForRecovery() { recording_.keepForRecovery(); } // At exit, for the next start.
+  void recover(const std::filesystem::path& place); // Saves what a killed program has recorded.
+  // Starts a table beside it, which needs no saving. Throws FileError.
+  void startLog(const std::filesystem::path& path);
+  SampleLog* log() { return log_ ? &*log_ : nullptr; } // nullptr: not started.
 
  signals:
-  void collected(const std::vector<patina::ToolSample>& samples); // also none
-  void failed(const QString& problem);                            // of the device
+  void collected(const std::vector<patina::ToolSample>& samples); // The list may be empty.
+  void failed(const QString& problem);
   void changed();
-  void said(const patina::Message& message);
+  void notified(const patina::Message& message);
 
  private:
-  bool saveRecording(); // false: not written, the samples are kept
+  void startRecording();
+  // Asks for a file and writes it. False: not written, the recording stays.
+  bool saveTable(const std::function<void(const std::filesystem::path&)>& save);
+  bool saveRecording();
+  void checkDisk(); // Says once that ticks cannot be written.
 
   Parts at_;
   TipServo servo_;
-  std::shared_ptr<LinkNotes> notes_;
+  std::shared_ptr<LinkStatistics> notes_; // State reported by the device's thread, or nullptr.
   std::shared_ptr<MountControls> controls_ = std::make_shared<MountControls>();
   bool needs_button_ = false;
-  std::shared_ptr<DeviceClock> clock_ = systemClock(); // that the notes are in
+  std::shared_ptr<DeviceClock> clock_ = systemClock(); // Clock of the notes.
   QString held_back_;
   StabilityJob stability_;
   ToolSample sample_;
-  Recording recording_, log_;
+  Recording recording_{stateFolder()};
+  std::optional<SampleLog> log_;
+  QString disk_problem_;
 };
 
 } // namespace patina

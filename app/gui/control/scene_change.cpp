@@ -2,14 +2,14 @@
 
 #include <utility>
 
-#include "haptics/devices/device_catalog.h"
+#include "haptics/catalog/device_catalog.h"
 
 namespace patina {
 namespace {
 
 bool sameDevice(const Scene& a, const Scene& b) {
   return a.device == b.device &&
-         (!deviceNamed(a.device).takes_numbers || a.device_model == b.device_model);
+         (!deviceNamed(a.device).uses_device_model || a.device_model == b.device_model);
 }
 
 bool sameValues(const Scene& a, const Scene& b) {

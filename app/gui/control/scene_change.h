@@ -1,20 +1,20 @@
-// One step of the scene that is open, and what of it differs from before.
+// A change of the open scene, and which parts differ from before.
 #pragma once
 
 #include <memory>
 
-#include "session/build/compile_scene.h"
+#include "session/compile/compile_scene.h"
 
 namespace patina {
 
 struct SceneChange {
-  // Another scene, the same one after a preview stood in its place, or the same one edited.
+  // Another scene; the same one shown again after a preview; or the same one edited.
   enum class Step { another, again, edited };
 
-  std::shared_ptr<const CompiledScene> scene; // never null
+  std::shared_ptr<const CompiledScene> scene; // Never nullptr.
   Step step = Step::another;
-  bool surface = true; // mesh or field
-  bool values = true;  // of touch, device and relief; or the surface
+  bool surface = true; // Mesh or field.
+  bool values = true;  // Touch, device, relief or surface.
   bool device = true;
 };
 

@@ -1,37 +1,132 @@
 #include "app/gui/control/view_controller.h"
 
+#include <algorithm>
 #include <utility>
 
-#include <QFileDialog>
+#include <QApplication>
+#include <QClipboard>
+#include <QFileInfo>
+#include <QImage>
 
 #include "app/gui/loading/load_dialogs.h"
-#include "visualization/view/camera.h"
+#include "app/gui/panels/field_plots.h"
+#include "app/gui/panels/figure_dialog.h"
+#include "app/gui/panels/video_export.h"
+#include "app/gui/toolkit/card.h"
+#include "core/error.h"
+#include "field/sampling/line_profile.h"
+#include "haptics/spacemouse/spacemouse.h"
+#include "usb/usb_bus.h"
+#include "visualization/export/export_files.h"
+#include "visualization/layers/slice_layer.h"
+#include "visualization/values/camera.h"
+#include "visualization/view/figure_file.h"
+#include "visualization/view/figure_picture.h"
 
 namespace patina {
+namespace {
+
+// Speed at full deflection of the cap [picture heights/s, rad/s].
+const SpaceMouseSpec kPace{.speed = 0.8, .turn_speed = 1.5};
+
+} // namespace
+
+CameraHand::CameraHand() : CameraHand(usbOpener("3Dconnexion SpaceMouse")) {}
+
+CameraHand::CameraHand(std::function<std::unique_ptr<UsbTransport>()> open) {
+  const LinkedSpec spec{.notes = notes_};
+  device_ = makeLinkedDevice(makeSpaceMouseLink(std::move(open), kPace, spec.clock), spec);
+}
+
+bool CameraHand::move(vtkCamera& camera) {
+  const DeviceState state = device_->exchange(Vec3::Zero(), 0);
+  if (effectiveStatus(state) != DeviceStatus::ok) {
+    last_.reset();
+    return false;
+  }
+  const DeviceState before = last_.value_or(state);
+  last_ = state;
+  const Vec3 shift = state.position - before.position;
+  const Eigen::AngleAxisd turn(state.orientation * before.orientation.conjugate());
+  if (shift == Vec3::Zero() && turn.angle() == 0) return false;
+  moveInObjectMode(camera, shift, turn.angle() * turn.axis());
+  return true;
+}
+
+std::string CameraHand::problem() const {
+  return notes_->status == DeviceStatus::reconnecting ? notes_->cause() : "";
+}
 
 ViewController::ViewController(const Parts& parts, QObject* parent) : QObject(parent), at_(parts) {
-  connect(&at_.display, &DisplayPanel::layerToggled, this,
-          [this](Layer layer, bool on) { view().show(layer, on); });
+  connect(&at_.display, &DisplayPanel::layerToggled, this, [this](Layer layer, bool on) {
+    view().show(layer, on);
+    offerColors();
+  });
   view().show(Layer::scale, at_.display.shown(Layer::scale));
-  connect(&at_.display, &DisplayPanel::sliceMoved, this,
-          [this](const SlicePlace& place) { view().setSlice(place); });
-  connect(&at_.display, &DisplayPanel::isoMoved, this, [this](double iso) { view().setIso(iso); });
+  connectSlice();
+  connect(&at_.display, &DisplayPanel::isoMoved, this, [this](double iso) {
+    iso_ = iso;
+    view().setIso(iso);
+  });
   connect(&at_.display.clip(), &QCheckBox::toggled, this, &ViewController::clip);
   connect(&at_.display, &DisplayPanel::clipTurned, this, &ViewController::turnClip);
   connect(&at_.view, &SceneWidget::clipMoved, this, &ViewController::setClip);
-  connect(&at_.paint, &PaintDisplay::showAsked, this,
+  connect(&at_.paint, &PaintDisplay::showRequested, this,
           [this](std::optional<PaintQuantity> quantity) {
             for (std::size_t i = 0; i < kPaintQuantities; ++i)
               view().show(static_cast<Layer>(static_cast<std::size_t>(Layer::color) + i),
                           quantity && static_cast<std::size_t>(*quantity) == i);
+            offerColors();
           });
-  connect(&at_.paint, &PaintDisplay::lockAsked, this,
-          [this](PaintQuantity quantity, std::optional<ValueRange> range) {
-            view().lockPaintRange(quantity, range);
+  connect(&at_.colors, &ColorPanel::edited, this,
+          [this](const std::string& thing, const ColorScale& scale) {
+            scales_[thing] = scale;
+            view().setColors(scales_); // Drawn before the edit is done.
+            ++colors_pending_;
+            emit colorsEdited(thing, scale);
           });
 }
 
-// Through the middle, across the axis that is most towards the viewer.
+void ViewController::connectSlice() {
+  const auto move = [this](const SlicePosition& place) {
+    slice_ = place;
+    view().setSlice(place);
+    at_.view.frames().cameraMoved(); // Drawn as soon as a camera motion.
+  };
+  connect(&at_.display, &DisplayPanel::sliceMoved, this, move);
+  connect(&at_.display, &DisplayPanel::sliceHandled, &at_.view, &SceneWidget::setSliceHandle);
+  connect(&at_.display, &DisplayPanel::sliceFacing, this, [this, move] {
+    move({-viewDirection(*view().renderer().GetActiveCamera()), {}});
+    at_.display.setSlice(slice_);
+  });
+  connect(&at_.view, &SceneWidget::sliceMoved, this, [this, move](const ClipPlane& plane) {
+    move({plane.normal, plane.normal.dot(plane.origin)});
+    at_.display.setSlice(slice_);
+  });
+  connect(&at_.display.lineProfile(), &QToolButton::toggled, &at_.view, [this](bool on) {
+    at_.view.setDrawsLine(on);
+    if (!on) view().setLine(std::nullopt);
+  });
+  connect(&at_.view, &SceneWidget::lineDrawn, this, &ViewController::showProfile);
+  connect(&at_.display, &DisplayPanel::histogramRequested, this, &ViewController::showHistogram);
+}
+
+void ViewController::showProfile(const Vec3& from, const Vec3& to, bool complete) {
+  view().setLine(std::pair(from, to));
+  at_.view.frames().cameraMoved();
+  if (!complete || !scene_) return;
+  const auto profile =
+      profileAlong(FieldSampler(*scene_->built.field, Sampler::high), from, to, 401);
+  showPlot(*at_.view.window(), profilePlot(profile));
+}
+
+void ViewController::showHistogram() {
+  if (!scene_) return;
+  const SurfaceField& field = *scene_->built.field;
+  showPlot(*at_.view.window(), histogramPlot(planeOf(field, slice_), field.grid.voxel));
+}
+
+// Puts the plane through the centre, normal to the axis that is most along the sight.
 void ViewController::clip(bool on) {
   if (!on) return setClip(std::nullopt);
   clip_ = ClipPlane{view().extent().center(), Vec3::UnitZ()};
@@ -60,16 +155,6 @@ void ViewController::turnClip(ClipTurn turn) {
   setClip(plane);
 }
 
-void ViewController::setClip(const std::optional<ClipPlane>& plane) {
-  clip_ = plane;
-  at_.view.setClip(plane);
-}
-
-void ViewController::clear() {
-  showMesh(nullptr);
-  content_ = Content::nothing;
-}
-
 void ViewController::showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name) {
   at_.mesh.showMesh(*mesh, name);
   showMesh(std::move(mesh));
@@ -81,6 +166,8 @@ void ViewController::showMesh(std::shared_ptr<const TriangleMesh> mesh) {
   at_.view.setField(nullptr);
   at_.display.setField(nullptr);
   view().setField(nullptr);
+  scene_ = nullptr;
+  at_.display.lineProfile().setChecked(false);
   showStability(nullptr);
   showPaint({});
   view().setMesh(std::move(mesh));
@@ -93,21 +180,56 @@ void ViewController::showScene(const SceneChange& change) {
   if (change.surface) {
     view().setMesh(scene.mesh);
     view().setField(scene.built.field);
+    at_.display.lineProfile().setChecked(false);
     at_.view.setField(scene.built.field);
     at_.mesh.showScene(scene);
     at_.display.setField(scene.built.field.get());
   }
+  scene_ = change.scene;
   showPaint(scene.scene);
+  if (!edited) colors_pending_ = 0;
+  takeColors();
   if (change.values) {
     view().setTipRadius(scene.scene.haptics.tip_radius.value_or(0));
     const auto band = touchBand(scene.scene.haptics);
     view().setBand(band);
     at_.display.setBand(band.has_value());
   }
-  // The camera of another scene, or of a preview, says nothing of this one.
+  // A new scene needs a new camera and clip plane.
   if (!edited) view().setView(ViewPreset::iso);
-  if (!edited && clip_) clip(true); // nor does its clip plane
+  if (!edited && clip_) clip(true);
   content_ = Content::scene;
+  offerColors();
+}
+
+// A scene that comes while colours are edited has older ones.
+void ViewController::takeColors() {
+  if (colors_pending_ > 0 || !scene_ || scene_->scene.colors == scales_) return;
+  scales_ = scene_->scene.colors;
+  view().setColors(scales_);
+  at_.colors.setScales(scales_);
+}
+
+void ViewController::colorsDone() {
+  colors_pending_ = std::max(0, colors_pending_ - 1);
+  takeColors();
+}
+
+void ViewController::offerColors() {
+  std::vector<std::string> things;
+  const auto add = [&](Layer layer) {
+    if (at_.display.shown(layer)) things.emplace_back(name(layer));
+  };
+  if (aligning_) {
+    things = {"error"};
+  } else if (content_ == Content::scene) {
+    add(Layer::slice);
+    const auto paint = at_.paint.shown();
+    if (paint && *paint != PaintQuantity::color) things.emplace_back(name(layerOf(*paint)));
+    add(Layer::iso);
+    add(Layer::mesh);
+  }
+  at_.colors.setThings(things);
 }
 
 void ViewController::showPaint(const Scene& scene) {
@@ -121,13 +243,9 @@ void ViewController::showPaint(const Scene& scene) {
 }
 
 void ViewController::showStability(const std::shared_ptr<const SurfaceStability>& stability) {
+  stability_ = stability;
   view().setStability(stability ? stability->surface.get() : nullptr,
-                      stability ? shownRatios(stability->map) : std::vector<float>{});
-}
-
-void ViewController::setCameraHand(std::unique_ptr<CameraHand> hand) {
-  hand_ = std::move(hand);
-  hand_problem_.clear();
+                      stability ? displayRatios(stability->map) : std::vector<float>{});
 }
 
 void ViewController::refresh() {
@@ -135,21 +253,121 @@ void ViewController::refresh() {
     if (hand_->move(*view().renderer().GetActiveCamera())) at_.view.frames().cameraMoved();
     if (const std::string problem = hand_->problem(); problem != hand_problem_) {
       hand_problem_ = problem;
-      if (!problem.empty()) emit said({QString::fromStdString(problem), true});
+      if (!problem.empty()) emit notified({QString::fromStdString(problem), true});
     }
   }
   at_.view.frames().refresh();
-  if (const auto shown = at_.paint.shown(); shown && *shown != PaintQuantity::color)
-    at_.paint.setRange(view().paintRange(*shown));
+  if (!aligning_) at_.colors.setRange(view().shownRange(at_.colors.thing()));
 }
 
 void ViewController::exportPicture() {
-  const QString path =
-      QFileDialog::getSaveFileName(at_.view.window(), tr("Export the picture"),
-                                   QStringLiteral("patina.png"), tr("PNG pictures (*.png)"));
-  if (path.isEmpty() || at_.view.grabFramebuffer().save(path, "PNG")) return;
-  showProblem(at_.view.window(), tr("The picture cannot be saved"), path,
-              tr("Choose a folder that you may write to, and a name that ends in .png."));
+  vtkRenderWindow& window = *at_.view.renderWindow();
+  auto* dialog = new FigureDialog({{window.GetSize()[0], window.GetSize()[1]}, window.GetDPI()},
+                                  at_.view.window());
+  connect(dialog, &FigureDialog::saveRequested, this, &ViewController::saveFigure);
+  connect(dialog, &FigureDialog::copyRequested, this, &ViewController::copyFigure);
+  dialog->open();
+}
+
+void ViewController::drawOutside(const std::function<void()>& draw) {
+  at_.view.makeCurrent(); // The view's bodies are freed in its context.
+  try {
+    draw();
+  } catch (const Error& error) {
+    showProblem(at_.view.window(), tr("The picture cannot be saved"),
+                QString::fromUtf8(error.what()),
+                tr("Choose a folder with write permission, and a name that ends in .png, .tif, "
+                   ".svg or .pdf."));
+  }
+  at_.view.doneCurrent(); // VTK has made others current.
+  at_.view.frames().cameraMoved();
+}
+
+void ViewController::saveFigure(const Figure& figure) {
+  auto* dialog = saveDialog(
+      at_.view.window(), tr("Export the picture"),
+      tr("PNG pictures (*.png);;TIFF pictures (*.tif *.tiff);;SVG drawings (*.svg);;PDF documents "
+         "(*.pdf)"),
+      QStringLiteral("patina.png"), [this, figure](const QString& path) {
+        FigureDialog::rememberFolder(path);
+        drawOutside([&] {
+          patina::saveFigure(view(), figure, path.toStdString());
+          emit notified({tr("Saved %1, %2").arg(path, sizeInWords(figure)), false, path});
+        });
+      });
+  dialog->setObjectName(QStringLiteral("figure_file"));
+  dialog->setDirectory(FigureDialog::folder());
+  dialog->open();
+}
+
+void ViewController::copyFigure(const Figure& figure) {
+  drawOutside([&] {
+    const FigurePicture picture = drawFigure(view(), figure);
+    QImage image =
+        QImage(picture.rgba.data(), picture.width, picture.height, QImage::Format_RGBA8888).copy();
+    const int per_metre = picture.dpi ? qRound(*picture.dpi / 0.0254) : 0;
+    if (per_metre > 0) image.setDotsPerMeterX(per_metre);
+    if (per_metre > 0) image.setDotsPerMeterY(per_metre);
+    QApplication::clipboard()->setImage(image);
+    emit notified({tr("Copied the picture, %1").arg(sizeInWords(figure))});
+  });
+}
+
+std::unique_ptr<SceneView> ViewController::copyOfView() {
+  auto copy = std::make_unique<SceneView>();
+  const auto& haptics = scene_->scene.haptics;
+  copy->setBackgroundStyle(view().backgroundStyle());
+  copy->showCube(true);
+  copy->setMesh(scene_->mesh);
+  copy->setField(scene_->built.field);
+  copy->setPaint(scene_->scene);
+  copy->setAnnotations(pinAnnotations(scene_->scene.pins));
+  if (stability_) copy->setStability(stability_->surface.get(), displayRatios(stability_->map));
+  copy->setTipRadius(haptics.tip_radius.value_or(0));
+  copy->setBand(touchBand(haptics));
+  copy->setSlice(slice_);
+  copy->setIso(iso_);
+  copy->setClip(clip_);
+  for (const Layer layer : allLayers()) copy->show(layer, view().shown(layer));
+  copy->setColors(scales_);
+  copy->renderer().GetActiveCamera()->DeepCopy(view().renderer().GetActiveCamera());
+  return copy;
+}
+
+void ViewController::exportVideo() {
+  askForPath(at_.view.window(), tr("Recording to replay"), QFileDialog::ExistingFile,
+             tr("Recordings (*.csv)"), [this](const QString& recording) {
+               auto* dialog = saveDialog(
+                   at_.view.window(), tr("Export video"), tr("Videos (*.ogv)"),
+                   QFileInfo(recording).completeBaseName() + QStringLiteral(".ogv"),
+                   [this, recording](const QString& path) { writeVideo(recording, path); });
+               dialog->setDirectory(QFileInfo(recording).absolutePath());
+               dialog->open();
+             });
+}
+
+void ViewController::writeVideo(const QString& recording, const QString& path) {
+  const auto refuse = [this](const QString& cause) {
+    showProblem(at_.view.window(), tr("The video cannot be written"), cause,
+                tr("Choose a recording of this scene, and a folder with write permission."));
+  };
+  if (!scene_) return;
+  try {
+    Figure figure;
+    const int* size = at_.view.renderWindow()->GetSize();
+    figure.width = size[0];
+    figure.height = size[1];
+    figure.magnification = std::max(1., at_.view.renderWindow()->GetDPI() / 72.);
+    figure.keeps_camera = true;
+    auto* job = new VideoExport(copyOfView(), readToolSamplesCsv(recording.toStdString()), figure,
+                                path, at_.view.window());
+    connect(job, &VideoExport::failed, this, refuse);
+    connect(job, &VideoExport::written, this, [this](const QString& file) {
+      emit notified({tr("Saved %1").arg(file), false, file});
+    });
+  } catch (const Error& error) {
+    refuse(QString::fromUtf8(error.what()));
+  }
 }
 
 } // namespace patina

@@ -4,6 +4,8 @@
 
 #include <QHBoxLayout>
 
+#include "app/gui/toolkit/card.h"
+
 namespace patina {
 
 LoadBar::LoadBar(QWidget* parent)
@@ -14,31 +16,30 @@ LoadBar::LoadBar(QWidget* parent)
   layout->addWidget(words_, 2);
   layout->addWidget(bar_, 1);
   layout->addWidget(cancel_);
-  cancel_->setObjectName(QStringLiteral("cancel_load"));
-  cancel_->setToolTip(tr("Leave it; what was open stays"));
+  named(cancel_, "cancel_load", tr("Cancel; what was open stays open"));
   connect(cancel_, &QPushButton::clicked, this, [this] {
     words_->setText(tr("Cancelling…"));
     cancel_->setEnabled(false);
     emit cancelled();
   });
-  patience_.setSingleShot(true);
-  patience_.setInterval(500);
-  connect(&patience_, &QTimer::timeout, this, &QWidget::show);
+  delay_.setSingleShot(true);
+  delay_.setInterval(500);
+  connect(&delay_, &QTimer::timeout, this, &QWidget::show);
   hide();
 }
 
-void LoadBar::setWork(const std::optional<Work>& work) {
+void LoadBar::setWork(const std::optional<TaskProgress>& work) {
   if (!work) {
     title_.clear();
-    patience_.stop();
+    delay_.stop();
     return hide();
   }
   if (work->title != title_) {
     title_ = work->title;
     cancel_->setEnabled(work->fraction >= 0);
     words_->setText(work->words);
-    setVisible(!work->later);
-    work->later ? patience_.start() : patience_.stop();
+    setVisible(!work->delayed);
+    work->delayed ? delay_.start() : delay_.stop();
   }
   if (cancel_->isEnabled()) words_->setText(work->words);
   bar_->setRange(0, work->fraction < 0 ? 0 : 1000);

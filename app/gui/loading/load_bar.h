@@ -1,15 +1,12 @@
-// Progress of what takes its time, with Cancel; hidden when nothing does.
+// Shows the progress of a running task, with Cancel; hidden without one.
 #pragma once
-
-#include <optional>
 
 #include <QProgressBar>
 #include <QPushButton>
 #include <QTimer>
-#include <QWidget>
 
-#include "app/gui/widgets/elided_label.h"
-#include "app/gui/window/window_state.h"
+#include "app/gui/state/window_state.h"
+#include "app/gui/toolkit/elided_label.h"
 
 namespace patina {
 
@@ -17,7 +14,7 @@ class LoadBar : public QWidget {
   Q_OBJECT
  public:
   explicit LoadBar(QWidget* parent = nullptr);
-  void setWork(const std::optional<Work>& work);
+  void setWork(const std::optional<TaskProgress>& work);
 
  signals:
   void cancelled();
@@ -26,8 +23,8 @@ class LoadBar : public QWidget {
   ElidedLabel* words_;
   QProgressBar* bar_;
   QPushButton* cancel_;
-  QString title_; // of the work that is seen, or will be
-  QTimer patience_;
+  QString title_;
+  QTimer delay_;
 };
 
 } // namespace patina

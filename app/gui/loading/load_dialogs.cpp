@@ -5,14 +5,12 @@
 #include <QDialog>
 #include <QDialogButtonBox>
 #include <QDoubleSpinBox>
-#include <QFormLayout>
-#include <QLabel>
 #include <QMessageBox>
-#include <QPushButton>
 #include <QRadioButton>
 #include <QVBoxLayout>
 
-#include "app/gui/widgets/words.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/words.h"
 
 namespace patina {
 namespace {
@@ -29,12 +27,25 @@ QDialog* questionAbout(QWidget* parent, const QString& title, const QString& wor
   return dialog;
 }
 
-QDialogButtonBox* addButtons(QDialog* dialog) {
+// Adds the buttons and opens the dialog.
+void ask(QDialog* dialog, QWidget* parent, std::function<void()> accepted) {
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, dialog);
   dialog->layout()->addWidget(buttons);
   QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
   QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
-  return buttons;
+  QObject::connect(dialog, &QDialog::accepted, parent, std::move(accepted));
+  dialog->open();
+}
+
+QMessageBox* warningBox(QWidget* parent, const char* name, const QString& title,
+                        const QString& message, QMessageBox::StandardButton button,
+                        const QString& advice) {
+  auto* box = named(
+      new QMessageBox(QMessageBox::Warning, title, withoutCommands(message), button, parent), name);
+  box->setAttribute(Qt::WA_DeleteOnClose);
+  box->setInformativeText(advice);
+  box->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  return box;
 }
 
 } // namespace
@@ -43,8 +54,8 @@ void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
              std::function<void(MeshUnit, UpAxis)> answer) {
   QDialog* dialog = questionAbout(
       parent, QDialog::tr("Which unit?"),
-      QDialog::tr("%1 is %2 units long. Mesh files carry no unit, and in millimetres it would be "
-                  "too small or too large to feel. What are its coordinates?")
+      QDialog::tr("%1 is %2 units long. Mesh files contain no unit, and in millimetres it would be "
+                  "too small or too large for the tool. What is its unit?")
           .arg(name)
           .arg(longest, 0, 'g', 4));
   dialog->setObjectName(QStringLiteral("unit_dialog"));
@@ -61,48 +72,40 @@ void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
     dialog->layout()->addWidget(button);
   }
   group->button(static_cast<int>(likelyUnit(longest)))->setChecked(true);
-  auto* y_up = new QCheckBox(QDialog::tr("y points upwards, not z"), dialog);
-  y_up->setObjectName(QStringLiteral("y_is_up"));
+  auto* y_up = named(new QCheckBox(QDialog::tr("y points upwards, not z"), dialog), "y_is_up");
   y_up->setChecked(up == UpAxis::y);
   dialog->layout()->addWidget(y_up);
-  addButtons(dialog);
-  QObject::connect(dialog, &QDialog::accepted, parent, [group, y_up, answer = std::move(answer)] {
+  ask(dialog, parent, [group, y_up, answer = std::move(answer)] {
     answer(static_cast<MeshUnit>(group->checkedId()), y_up->isChecked() ? UpAxis::y : UpAxis::z);
   });
-  dialog->open();
 }
 
 void askIso(QWidget* parent, const QString& name, double low, double high,
             std::function<void(double)> answer) {
-  QDialog* dialog = questionAbout(
-      parent, QDialog::tr("Where is the surface?"),
-      QDialog::tr("%1 is a volume whose values run from %2 to %3. The surface to feel is where the "
-                  "value is:")
-          .arg(name)
-          .arg(low, 0, 'g', 5)
-          .arg(high, 0, 'g', 5));
+  QDialog* dialog =
+      questionAbout(parent, QDialog::tr("Where is the surface?"),
+                    QDialog::tr("%1 is a volume with values from %2 to %3. Value at the surface:")
+                        .arg(name)
+                        .arg(low, 0, 'g', 5)
+                        .arg(high, 0, 'g', 5));
   dialog->setObjectName(QStringLiteral("iso_dialog"));
   auto* number = new QDoubleSpinBox(dialog);
   number->setDecimals(6);
   number->setRange(low, high);
   number->setSingleStep((high - low) / 20);
-  // A distance has its surface at 0; of anything else the middle is a first guess.
+  // The surface of a distance field is at 0; otherwise the mean is a first guess.
   number->setValue(low < 0 && high > 0 ? 0 : 0.5 * (low + high));
   dialog->layout()->addWidget(number);
-  addButtons(dialog);
-  QObject::connect(dialog, &QDialog::accepted, parent,
-                   [number, answer = std::move(answer)] { answer(number->value()); });
-  dialog->open();
+  ask(dialog, parent, [number, answer = std::move(answer)] { answer(number->value()); });
 }
 
 QString adviceFor(const QString& message) {
   if (message.contains(QStringLiteral("no object")))
-    return QDialog::tr("Start with a mesh, File → Add object…, and save the workspace; or run "
-                       "patina scene -o FOLDER --add MESH.");
+    return QDialog::tr("Start with a mesh, File → Add object…, and save the workspace.");
   if (message.contains(QStringLiteral("workspace.json: cannot be opened")))
-    return QDialog::tr("A workspace's folder has a workspace.json, a scan's has frames.csv, "
-                       "poses.tum or path.csv. Pictures without times are opened by Open "
-                       "pictures… on the desk Scan.");
+    return QDialog::tr(
+        "A workspace folder contains workspace.json; a scan folder contains frames.csv, poses.tum "
+        "or path.csv. Open pictures without times by Open pictures… on the desk Scan.");
   if (message.contains(QStringLiteral("no such file")))
     return QDialog::tr("Check the name, or open it with File → Open.");
   if (message.contains(QStringLiteral("extension")) || message.contains(QStringLiteral("format")))
@@ -110,33 +113,32 @@ QString adviceFor(const QString& message) {
                        "workspace folders.");
   if (message.contains(QStringLiteral("memory")) || message.contains(QStringLiteral("grid")))
     return QDialog::tr("Choose a smaller resolution or a smaller band.");
-  return QDialog::tr("Repair the file at the place that is named, or export it again from the "
-                     "program that made it.");
+  return QDialog::tr("Repair the file at the reported place, or export it again.");
 }
 
 void askRecover(QWidget* parent, const QString& name, const QString& message,
                 std::function<void()> yes) {
-  auto* box = new QMessageBox(QMessageBox::Warning, QDialog::tr("%1 is damaged").arg(name), message,
-                              QMessageBox::Cancel, parent);
-  box->setObjectName(QStringLiteral("damaged"));
-  box->setAttribute(Qt::WA_DeleteOnClose);
-  box->setInformativeText(
-      QDialog::tr("What can still be read can be opened; what cannot is left out, and said."));
-  auto* recover = box->addButton(QDialog::tr("Recover"), QMessageBox::AcceptRole);
-  recover->setObjectName(QStringLiteral("recover_damaged"));
+  auto* box = warningBox(
+      parent, "damaged", QDialog::tr("%1 is damaged").arg(name), message, QMessageBox::Cancel,
+      QDialog::tr("Patina can open the readable part. It reports what is missing."));
+  auto* recover =
+      named(box->addButton(QDialog::tr("Recover"), QMessageBox::AcceptRole), "recover_damaged");
   QObject::connect(recover, &QPushButton::clicked, parent, std::move(yes));
-  box->setTextInteractionFlags(Qt::TextSelectableByMouse);
   box->open();
 }
 
 void showProblem(QWidget* parent, const QString& title, const QString& message,
                  const QString& advice) {
-  auto* box = new QMessageBox(QMessageBox::Warning, title, message, QMessageBox::Ok, parent);
-  box->setObjectName(QStringLiteral("problem"));
-  box->setAttribute(Qt::WA_DeleteOnClose);
-  box->setInformativeText(advice);
-  box->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  box->open();
+  warningBox(parent, "problem", title, message, QMessageBox::Ok, advice)->open();
+}
+
+int askToSave(QWidget* parent, const char* name, const QString& title, const QString& message,
+              const QString& advice) {
+  QMessageBox box(QMessageBox::Question, title, message,
+                  QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, parent);
+  box.setObjectName(QString::fromUtf8(name));
+  box.setInformativeText(advice);
+  return box.exec();
 }
 
 } // namespace patina

@@ -1,5 +1,4 @@
-// Questions and bad news around opening a file. None of them blocks: each is a window of its own
-// that is gone when it is answered.
+// Questions and errors about files. None blocks unless it says so; each closes when answered.
 #pragma once
 
 #include <functional>
@@ -11,22 +10,25 @@
 
 namespace patina {
 
-// What unit a mesh is in whose size in millimetres makes little sense, and what is up in it;
-// longest in file units.
+// Queries unit and up axis of a mesh of unlikely size; longest: its longest side in file units.
 void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
              std::function<void(MeshUnit, UpAxis)> answer);
 
-// Which value of a volume is the surface.
+// Queries the value of a volume at the surface.
 void askIso(QWidget* parent, const QString& name, double low, double high,
             std::function<void(double)> answer);
 
-// Whether of a workspace that is damaged what can be read is to be opened.
+// Offers to open the readable part of a damaged workspace.
 void askRecover(QWidget* parent, const QString& name, const QString& message,
                 std::function<void()> yes);
 
-// One line of what went wrong, and what to do about it where that can be said.
+// Shows what went wrong, and advice if there is any.
 void showProblem(QWidget* parent, const QString& title, const QString& message,
                  const QString& advice);
 QString adviceFor(const QString& message);
+
+// Asks to save, discard or cancel, and blocks. Returns the button of QMessageBox.
+int askToSave(QWidget* parent, const char* name, const QString& title, const QString& message,
+              const QString& advice = {});
 
 } // namespace patina

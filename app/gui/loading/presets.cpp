@@ -2,31 +2,23 @@
 
 #include <algorithm>
 
-#include <QCoreApplication>
-
+#include "app/gui/toolkit/words.h"
 #include "field/surface/models.h"
 #include "geometry/mesh/shapes.h"
-#include "session/build/session.h"
+#include "session/open/session.h"
 
 void initPresetPictures() {
-  Q_INIT_RESOURCE(presets); // of a static library
+  Q_INIT_RESOURCE(presets);
 }
 
 namespace patina {
-namespace {
-
-QString said(const char* words) {
-  return QCoreApplication::translate("Presets", words);
-}
-
-} // namespace
 
 const std::vector<Preset>& presets() {
   static const std::vector<Preset> kAll = {
-      {"dinosaur", said("Toy dinosaur"), said("One smooth closed surface, 100 mm long")},
-      {"pottery", said("Vase with friction"), said("Thin-walled, felt 1 mm outside its surface")},
-      {"galleon", said("Ship of thin sheets"), said("Open sheets, felt from both sides")},
-      {"ball", said("Ball"), said("A round of 30 mm: the plainest thing to feel and paint on")}};
+      {"dinosaur", tr("Toy dinosaur"), tr("One smooth closed surface, 100 mm long")},
+      {"pottery", tr("Vase with friction"), tr("Thin-walled, felt 1 mm outside its surface")},
+      {"galleon", tr("Ship of thin sheets"), tr("Open sheets, felt from both sides")},
+      {"ball", tr("Ball"), tr("A sphere of 30 mm: the simplest surface to feel and to paint on")}};
   return kAll;
 }
 

@@ -1,4 +1,4 @@
-// Scenes that the program makes itself, to begin with.
+// Example scenes that the program generates.
 #pragma once
 
 #include <string>
@@ -15,10 +15,10 @@ struct Preset {
   std::string name;
   QString words, tip;
 };
-const std::vector<Preset>& presets(); // the first is what opens where nothing is named
+const std::vector<Preset>& presets(); // The first is the default.
 
 QPixmap pictureOf(const Preset& preset);
-Scene presetScene(const std::string& name); // of one of them
+Scene presetScene(const std::string& name); // `name` must be one of presets().
 const Preset& presetNamed(const std::string& name);
 
 } // namespace patina

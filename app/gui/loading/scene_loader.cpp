@@ -7,20 +7,20 @@
 
 #include "app/gui/loading/presets.h"
 #include "core/error.h"
-#include "session/build/compile_warnings.h"
+#include "session/compile/compile_warnings.h"
 #include "session/store/journal_fold.h"
-#include "visualization/export/field_io.h"
+#include "visualization/files/field_io.h"
 #include "workspace/workspace.h"
 
 namespace patina {
 namespace {
 
-// The range in which a mesh in millimetres is taken for what it is.
+// Returns true unless the size is likely for a mesh in millimetres.
 bool oddSize(double metres) {
   return metres < 1e-3 || metres > 2;
 }
 
-// Throws Error where a workspace cannot be opened though its files can be read.
+// Throws Error if a workspace cannot be opened although its files can be read.
 void checkOpens(const std::filesystem::path& folder, const Scene& saved) {
   const OpenedWorkspace history = openHistory(folder);
   const FoldedJournal fold = folded(history.journal, history.journal_file.string());
@@ -43,12 +43,11 @@ const Preset& presetOf(const LoadRequest& request) {
 SceneLoader::SceneLoader(Editor::Listener listener, QObject* parent)
     : QObject(parent), listener_(std::move(listener)) {
   connect(&jobs_, &Background::progressed, this, &SceneLoader::progressed);
-  connect(&jobs_, &Background::rested, this, &SceneLoader::rested);
 }
 
 void SceneLoader::cancel() {
   if (!jobs_.busy()) return;
-  jobs_.silence();
+  jobs_.discardResult();
   QMetaObject::invokeMethod(
       this,
       [this] {
@@ -59,12 +58,12 @@ void SceneLoader::cancel() {
 
 void SceneLoader::start(const LoadRequest& request) {
   request_ = request;
-  jobs_.start([this, request](Progress& progress, const Background::Deliver& deliver) {
-    run(request, progress, deliver);
+  jobs_.start([this, request](Progress& progress, const Background::Post& post) {
+    run(request, progress, post);
   });
 }
 
-bool SceneLoader::readFile(const LoadRequest& request, const Background::Deliver& deliver,
+bool SceneLoader::readFile(const LoadRequest& request, const Background::Post& post,
                            OpenedScene& opened) {
   if (request.path.empty()) {
     opened.scene = presetScene(presetOf(request).name);
@@ -73,7 +72,7 @@ bool SceneLoader::readFile(const LoadRequest& request, const Background::Deliver
   const bool volume = isVolumeFile(request.path);
   if (volume && !request.options.iso && !isField(request.path)) {
     const VolumeRange range = scalarRange(request.path);
-    deliver(true, [this, range] { emit needsIso(range.low, range.high); });
+    post(true, [this, range] { emit needsIso(range.low, range.high); });
     return false;
   }
   opened = openScene(request.path, request.options);
@@ -82,7 +81,7 @@ bool SceneLoader::readFile(const LoadRequest& request, const Background::Deliver
     const Box3 box = bounds(worldMesh(opened.scene));
     const double longest = box.isEmpty() ? 0 : box.sizes().maxCoeff();
     if (oddSize(longest)) {
-      deliver(true, [this, longest] { emit needsUnit(1000 * longest); });
+      post(true, [this, longest] { emit needsUnit(1000 * longest); });
       return false;
     }
   }
@@ -101,14 +100,15 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
   try {
     made.editor = Editor::open(request.path, spec, progress, listener_);
   } catch (const FileError& error) {
-    // Another program has it open, or nobody may write there: it can still be looked at.
+    // A workspace that another program has open, or without write permission, is read-only.
     spec.own = false;
     try {
       made.editor = Editor::open(request.path, spec, progress, listener_);
     } catch (const FileError&) {
       throw error;
     }
-    made.warnings << tr("Edits are not kept in this folder: %1").arg(error.what());
+    made.read_only = tr("Edits are not saved in this folder: %1").arg(error.what());
+    made.warnings << made.read_only;
   }
   made.warnings << lines(made.editor->notes());
   const Scene& scene = made.editor->scene();
@@ -126,58 +126,56 @@ void SceneLoader::openEditor(const LoadRequest& request, OpenedScene opened, Ope
   }
 }
 
-void SceneLoader::run(const LoadRequest& asked, Progress& progress,
-                      const Background::Deliver& deliver) {
+void SceneLoader::run(const LoadRequest& asked, Progress& progress, const Background::Post& post) {
   try {
     auto made = std::make_shared<OpenedEditor>();
     LoadRequest request = asked;
-    if (request.asks && request.path.empty()) // a preset, or what a crash left
-      return deliver(true, [this] { emit readable(); });
+    if (request.check_only && request.path.empty()) // A preset, or a scene after a crash.
+      return post(true, [this] { emit readable(); });
     if (!request.place.empty()) {
       made->autosave = Autosave::adopt(request.place);
       request.path = made->autosave->workspace();
-      request.recover = true; // what a crash left is taken as it is
+      request.recover = true; // It may be incomplete.
     }
     OpenedScene opened;
     const bool folder = std::filesystem::is_directory(request.path);
     if (folder && !request.adds) {
-      // To be seen at once: as it was saved, without what the journal says beyond.
+      // Shows the saved scene at once, without later edits of the journal.
       if (!request.recover) opened.scene = loadWorkspace(request.path);
-      if (!request.recover && request.asks) checkOpens(request.path, opened.scene);
-    } else if (!readFile(request, deliver, opened)) {
+      if (!request.recover && request.check_only) checkOpens(request.path, opened.scene);
+    } else if (!readFile(request, post, opened)) {
       return;
     }
     progress.throwIfCancelled();
-    if (request.asks) return deliver(true, [this] { emit readable(); });
+    if (request.check_only) return post(true, [this] { emit readable(); });
     made->warnings = lines(opened.warnings);
     if (request.adds) {
       auto objects = std::make_shared<OpenedScene>(std::move(opened));
-      return deliver(true, [this, objects] { emit read(objects); });
+      return post(true, [this, objects] { emit read(objects); });
     }
     if (!opened.scene.objects.empty()) {
       const QString name = request.path.empty()
                                ? QString::fromStdString(presetOf(request).name)
                                : QString::fromStdString(request.path.filename().string());
       const auto mesh = std::make_shared<const TriangleMesh>(worldMesh(opened.scene));
-      deliver(false, [this, mesh, name] { emit meshReady(mesh, name); });
+      post(false, [this, mesh, name] { emit meshReady(mesh, name); });
     }
     openEditor(request, std::move(opened), *made, progress);
-    // What is known of a preset is no news: nobody has made it, and nobody has to mend it.
+    // Warnings about a preset are useless, because the user cannot repair it.
     const bool preset = request.path.empty() && request.place.empty();
     if (!preset) made->warnings << lines(compileWarnings(*made->editor->compiled()));
-    if (folder && made->editor->unsaved() && !made->autosave) // last, for it is what is seen
-      made->warnings << tr("Edits that were made after the last save are here again; they are not "
-                           "saved yet.");
-    deliver(true, [this, made] { emit ready(made); });
+    if (folder && made->editor->unsaved() && !made->autosave) // Must be last to be visible.
+      made->warnings << tr("Edits made after the last save are restored; they are not saved yet.");
+    post(true, [this, made] { emit ready(made); });
   } catch (const Cancelled&) {
-    deliver(true, [this] { emit cancelled(); });
+    post(true, [this] { emit cancelled(); });
   } catch (const std::bad_alloc&) {
-    deliver(true, [this] {
+    post(true, [this] {
       emit failed(tr("There is not enough memory for this scene: choose a smaller resolution."));
     });
   } catch (const std::exception& error) {
     const QString message = QString::fromStdString(error.what());
-    deliver(true, [this, message] { emit failed(message); });
+    post(true, [this, message] { emit failed(message); });
   }
 }
 

@@ -1,32 +1,141 @@
 #include "app/gui/painting/brush_panel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include <QColorDialog>
+#include <QHBoxLayout>
 #include <QMenu>
 #include <QToolButton>
 
-#include "app/gui/painting/color_choice.h"
-#include "app/gui/painting/tool_choice.h"
+#include "app/gui/painting/recent_colors.h"
+#include "app/gui/state/tool_choice.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/theme.h"
+#include "app/gui/toolkit/words.h"
+#include "authoring/brush/painter.h"
 
 namespace patina {
+
 namespace {
 
-QString wordsOf(std::string_view utf8) {
-  return QString::fromUtf8(utf8.data(), static_cast<int>(utf8.size()));
+using Color = std::array<double, 3>; // sRGB
+
+constexpr int kWide = 21, kHigh = 22;
+constexpr std::array<Color, 8> kSwatches{{{0.80, 0.22, 0.16},
+                                          {0.93, 0.55, 0.13},
+                                          {0.95, 0.83, 0.30},
+                                          {0.29, 0.58, 0.28},
+                                          {0.16, 0.52, 0.65},
+                                          {0.20, 0.29, 0.62},
+                                          {0.96, 0.96, 0.94},
+                                          {0.14, 0.15, 0.18}}};
+
+QColor qColor(const Color& color) {
+  return QColor::fromRgbF(color[0], color[1], color[2]);
+}
+
+void dressAsSwatch(QToolButton& button, const Color& color, const char* border) {
+  applyStyleSheet(button,
+                  QStringLiteral("QToolButton { background: %1; border: %2; border-radius: 3px; }"
+                                 "QToolButton:focus { border: 2px solid @text; }")
+                      .arg(qColor(color).name(), QString::fromUtf8(border)));
+}
+
+// Plots the weight of the brush from edge to edge.
+PlotContent weightsOf(const Brush& brush) {
+  constexpr int kSteps = 400;
+  PlotCurve curve{{}, "accent"};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double d = 2. * i / kSteps - 1;
+    curve.points << QPointF(d, std::abs(d) < 1 ? brushWeight(brush, std::abs(d), 1) : 0);
+  }
+  PlotContent content{{{{}, {}, {curve}}}};
+  content.bare = true;
+  return content;
 }
 
 QString titleOf(const Tool& tool) {
   if (tool == Tool::erase) return BrushPanel::tr("Eraser");
   const auto channel = channelOf(tool);
-  return BrushPanel::tr("Brush: %1").arg(channel ? wordsOf(rowOf(*channel).tool) : captionOf(tool));
+  return BrushPanel::tr("Brush: %1")
+      .arg(channel ? shownText(rowOf(*channel).tool) : captionOf(tool));
 }
 
 } // namespace
 
-BrushPanel::BrushPanel(QWidget* parent) : QGroupBox(parent), layout_(new QVBoxLayout(this)) {
-  layout_->setContentsMargins(0, 0, 0, 0);
-}
+// The colour of a brush: the current one, swatches and recent ones.
+class ColorChoice : public QWidget {
+  Q_OBJECT
+ public:
+  ColorChoice(const Color& now, QWidget* parent) : QWidget(parent), color_(now), recent_(nullptr) {
+    auto* column = layoutIn<QVBoxLayout>(this, 4);
+    auto* above = new QWidget(this);
+    auto* line = layoutIn<QHBoxLayout>(above, 3);
+    now_ = named(swatch(*line, 40), "brush_color",
+                 tr("Colour of the brush; click to choose another…"));
+    dressAsSwatch(*now_, color_, "2px solid @accent");
+    connect(now_, &QToolButton::clicked, this, &ColorChoice::ask);
+    for (const Color& color : kSwatches) offer(*swatch(*line, kWide), color);
+    line->addStretch(1);
+    column->addWidget(above);
+    showRecent();
+  }
+
+ signals:
+  void chosen(const std::array<double, 3>& color);
+
+ private:
+  QToolButton* swatch(QHBoxLayout& line, int wide) {
+    auto* button = new QToolButton(this);
+    button->setFixedSize(wide, kHigh);
+    line.addWidget(button);
+    return button;
+  }
+  void offer(QToolButton& button, const Color& color) {
+    dressAsSwatch(button, color, "1px solid @faint");
+    button.setToolTip(tr("Paint with %1").arg(qColor(color).name()));
+    connect(&button, &QToolButton::clicked, this, [this, color] { choose(color); });
+  }
+  void choose(const Color& color) {
+    color_ = color;
+    dressAsSwatch(*now_, color, "2px solid @accent");
+    emit chosen(color);
+  }
+  void ask() {
+    const QColor color = QColorDialog::getColor(qColor(color_), this, tr("Brush colour"));
+    if (!color.isValid()) return;
+    rememberColor(color);
+    showRecent();
+    choose({color.redF(), color.greenF(), color.blueF()});
+  }
+  // Hidden until a colour other than a swatch was chosen.
+  void showRecent() {
+    takeAway(recent_);
+    recent_ = nullptr;
+    const auto colors = recentColors();
+    if (colors.empty()) return;
+    recent_ = new QWidget(this);
+    auto* line = layoutIn<QHBoxLayout>(recent_, 3);
+    QLabel* caption = quietLabel(tr("Last"));
+    caption->setFixedWidth(40);
+    line->addWidget(caption);
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+      QToolButton* button = swatch(*line, kWide);
+      button->setObjectName(QStringLiteral("recent_color_%1").arg(i));
+      offer(*button, {colors[i].redF(), colors[i].greenF(), colors[i].blueF()});
+    }
+    line->addStretch(1);
+    layout()->addWidget(recent_);
+  }
+
+  Color color_;
+  QToolButton* now_;
+  QWidget* recent_;
+};
+
+BrushPanel::BrushPanel(QWidget* parent) : QGroupBox(parent), layout_(layoutIn<QVBoxLayout>(this)) {}
 
 void BrushPanel::show(const Brush& brush, const BrushPresets& presets) {
   brush_ = brush;
@@ -35,7 +144,7 @@ void BrushPanel::show(const Brush& brush, const BrushPresets& presets) {
 }
 
 void BrushPanel::change() {
-  curve_->setBrush(brush_);
+  curve_->setContent(weightsOf(brush_));
   emit edited(brush_);
 }
 
@@ -56,7 +165,7 @@ void BrushPanel::rebuild(const BrushPresets& presets) {
 
 void BrushPanel::addColor() {
   auto* choice = new ColorChoice(brush_.color, form_);
-  connect(choice, &ColorChoice::chosen, this, [this](const ColorChoice::Color& color) {
+  connect(choice, &ColorChoice::chosen, this, [this](const Color& color) {
     brush_.color = color;
     change();
   });
@@ -68,21 +177,22 @@ void BrushPanel::addValue(double extent) {
   const double highest = 1000 * std::max(1e-3, std::min(0.05 * extent, 0.05));
   QString caption = tr("Height; below 0 it engraves"), unit = QStringLiteral("mm");
   RowRange range{-highest, highest, highest / 50, 2};
-  double per_si = 1000;
+  double display_per_si = 1000;
   if (const auto channel = channelOf(brush_.tool)) {
     addChannels(*channel);
     const Channel& row = rowOf(*channel);
-    const ChannelDial& dial = row.dial;
-    caption = wordsOf(row.dial_caption);
-    unit = wordsOf(row.reading.unit);
-    range = {dial.least, dial.most, dial.step, dial.decimals, dial.logarithmic};
-    per_si = row.reading.per_si;
+    const SliderRange& dial = row.dial;
+    caption = shownText(row.dial_caption);
+    unit = shownText(row.reading.unit);
+    range = {dial.min, dial.max, dial.step, dial.decimals, dial.logarithmic};
+    display_per_si = row.reading.display_per_si;
   }
-  form_->addRow({"brush_value", caption, unit, range, per_si, tr("What the brush paints")},
-                brush_.value);
+  form_->addRow(
+      RowSpec("brush_value", caption, unit, range, tr("What the brush paints"), display_per_si),
+      brush_.value);
 }
 
-// Which of the channels that share a tool.
+// Adds a choice of the channels that share a tool.
 void BrushPanel::addChannels(MaterialChannel channel) {
   std::vector<MaterialChannel> shared;
   QStringList words;
@@ -98,9 +208,9 @@ void BrushPanel::addChannels(MaterialChannel channel) {
   form_->addChoice(
       name.c_str(), tr("Paints"), words, now,
       [this, shared](int index) {
-        emit toolAsked(Tool::material(shared[static_cast<std::size_t>(index)]));
+        emit toolRequested(Tool::material(shared[static_cast<std::size_t>(index)]));
       },
-      tr("Which of the values that share this tool"));
+      tr("Channel to paint; these channels share the tool"));
 }
 
 void BrushPanel::addErased() {
@@ -115,15 +225,14 @@ void BrushPanel::addErased() {
   form_->addChoice(
       "erases", tr("Erases"), words, static_cast<int>(now),
       [this, names](int index) { brush_.erases = names[static_cast<std::size_t>(index)]; },
-      tr("All that was painted, or one kind of it"));
+      tr("What to erase: all paint, or one kind"));
 }
 
 void BrushPanel::addLayers(const BrushPresets& presets) {
   if (brush_.tool == Tool::erase) return;
-  auto* box = new QToolButton(form_);
-  box->setObjectName(QStringLiteral("brush_also"));
-  box->setText(tr("Paints also…"));
-  box->setToolTip(tr("What the same stroke lays on beside this, each as its own tool is set"));
+  auto* box =
+      named(new QToolButton(form_), "brush_also",
+            tr("Further channels that the stroke paints, each with the settings of its own tool"));
   box->setPopupMode(QToolButton::InstantPopup);
   box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
   auto* menu = new QMenu(box);
@@ -143,8 +252,8 @@ void BrushPanel::addLayers(const BrushPresets& presets) {
     action->setChecked(layerOf(brush_, tool) != nullptr);
     const BrushLayer layer = presets.brush(tool);
     connect(action, &QAction::toggled, this, [this, layer, say](bool on) {
-      std::erase_if(brush_.also, [&](const BrushLayer& l) { return l.tool == layer.tool; });
-      if (on) brush_.also.push_back(layer);
+      std::erase_if(brush_.extra_layers, [&](const BrushLayer& l) { return l.tool == layer.tool; });
+      if (on) brush_.extra_layers.push_back(layer);
       say();
       change();
     });
@@ -155,29 +264,18 @@ void BrushPanel::addLayers(const BrushPresets& presets) {
 }
 
 void BrushPanel::addSize(const BrushPresets& presets) {
-  const double most = 500 * presets.extent();
-  form_->addRow({"brush_radius",
-                 tr("Radius"),
-                 QStringLiteral("mm"),
-                 {most / 500, most, most / 100, 2, true},
-                 1000,
-                 tr("[ smaller, ] larger")},
+  const double max_radius = 500 * presets.extent();
+  form_->addRow(RowSpec("brush_radius", tr("Radius"), QStringLiteral("mm"),
+                        {max_radius / 500, max_radius, max_radius / 100, 2, true},
+                        tr("[ smaller, ] larger"), 1000),
                 brush_.radius);
-  form_->addRow({"brush_grows",
-                 tr("Radius from force"),
-                 QStringLiteral("mm/N"),
-                 {0, most / 10, most / 500, 2},
-                 1000,
-                 tr("The harder the tool presses, the larger the brush; a pen's pressure is such "
-                    "a force")},
+  form_->addRow(RowSpec("brush_grows", tr("Radius from force"), QStringLiteral("mm/N"),
+                        {0, max_radius / 10, max_radius / 500, 2},
+                        tr("The brush grows with the pressing force, or with a pen's pressure"),
+                        1000),
                 brush_.radius_per_force);
-  form_->addRow({"brush_press",
-                 tr("Pressing force"),
-                 QStringLiteral("N"),
-                 {0.1, 3, 0.1, 1},
-                 1,
-                 tr("How hard the mouse, or a pen at full pressure, presses the tool onto the "
-                    "surface")},
+  form_->addRow(RowSpec("brush_press", tr("Pressing force"), QStringLiteral("N"), {0.1, 3, 0.1, 1},
+                        tr("Pressing force of the mouse, or of a pen at full pressure")),
                 presets.press, [this](double now) { emit pressed(now); });
 }
 
@@ -187,15 +285,13 @@ void BrushPanel::addShape() {
       static_cast<int>(brush_.shape),
       [this](int index) { brush_.shape = static_cast<BrushShape>(index); },
       tr("1 − (d/r)^f, (1 − d/r)^f or (1 − (d/r)²)^f"));
-  form_->addRow({"brush_falloff",
-                 tr("Fall-off"),
-                 {},
-                 {0.25, 16, 0.25, 2, true},
-                 1,
-                 tr("{ less, } more: the exponent f of the shape")},
+  form_->addRow(RowSpec("brush_falloff", tr("Fall-off"), QString(), {0.25, 16, 0.25, 2, true},
+                        tr("{ less, } more: the exponent f of the shape")),
                 brush_.falloff);
-  curve_ = new BrushCurve(form_);
-  curve_->setBrush(brush_);
+  curve_ = new PlotWidget(form_);
+  curve_->setFixedHeight(44);
+  curve_->setToolTip(tr("Strength of the brush from edge to edge"));
+  curve_->setContent(weightsOf(brush_));
   form_->addWidget(curve_);
 }
 
@@ -212,22 +308,26 @@ void BrushPanel::addChoices() {
     form_->addChoice(
         "brush_mode", tr("Lays on"), words, static_cast<int>(now),
         [this, modes](int index) { brush_.mode = modes[static_cast<std::size_t>(index)]; },
-        tr("Once a stroke, again with every moment, added to what is there, or made even"));
+        tr("How a stroke combines with existing paint: once a stroke, continuously, added, or "
+           "smoothed"));
   }
   form_->addChoice(
       "brush_seed", tr("Starts"), {tr("at the nearest point"), tr("under the tip")},
-      static_cast<int>(brush_.seed), [this](int index) { brush_.seed = static_cast<Seed>(index); },
-      tr("Under the tip: where the way from the tip goes through the surface, as in "
-         "the paper; on thin parts it is the side that is touched"));
+      static_cast<int>(brush_.anchor),
+      [this](int index) { brush_.anchor = static_cast<DabAnchor>(index); },
+      tr("Under the tip: where the line from the tip meets the surface, as in the paper. On thin "
+         "parts this is the touched side."));
   form_->addChoice(
       "brush_symmetry", tr("Mirrored"), {tr("not"), tr("across x"), tr("across y"), tr("across z")},
       static_cast<int>(brush_.symmetry),
       [this](int index) { brush_.symmetry = static_cast<Symmetry>(index); },
-      tr("The same across the middle of the object's box"));
-  form_->addCheck("front_only", tr("Front faces only"),
-                  tr("Leave out what looks away from the place that is touched, such as the far "
-                     "side of a thin part"),
-                  brush_.front_only, [this](bool on) { brush_.front_only = on; });
+      tr("Paints mirrored about the centre of the object's box, too"));
+  form_->addCheck(
+      "front_only", tr("Front faces only"),
+      tr("Skips faces that point away from the touched point, such as the far side of a thin part"),
+      brush_.front_only, [this](bool on) { brush_.front_only = on; });
 }
 
 } // namespace patina
+
+#include "brush_panel.moc"

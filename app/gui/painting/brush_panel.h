@@ -1,12 +1,14 @@
-// The brush of the tool that paints; not there while nothing paints.
+// The brush of the current tool; hidden while the tool does not paint.
 #pragma once
 
 #include <QGroupBox>
 #include <QVBoxLayout>
+#include <QWidget>
 
-#include "app/gui/painting/brush_curve.h"
 #include "app/gui/painting/brush_presets.h"
-#include "app/gui/panels/form.h"
+#include "app/gui/toolkit/form.h"
+#include "app/gui/toolkit/plot.h"
+#include "scene/stroke.h"
 
 namespace patina {
 
@@ -15,12 +17,12 @@ class BrushPanel : public QGroupBox {
  public:
   explicit BrushPanel(QWidget* parent = nullptr);
 
-  void show(const Brush& brush, const BrushPresets& presets); // sends no signal
+  void show(const Brush& brush, const BrushPresets& presets); // Sends no signal.
 
  signals:
   void edited(const patina::Brush& brush);
-  void pressed(double newtons); // how hard the mouse presses
-  void toolAsked(patina::Tool tool);
+  void pressed(double newtons); // Force of the mouse [N].
+  void toolRequested(patina::Tool tool);
 
  private:
   void rebuild(const BrushPresets& presets);
@@ -37,7 +39,7 @@ class BrushPanel : public QGroupBox {
   Brush brush_;
   QVBoxLayout* layout_;
   Form* form_ = nullptr;
-  BrushCurve* curve_ = nullptr; // of the form
+  PlotWidget* curve_ = nullptr;
 };
 
 } // namespace patina

@@ -9,7 +9,7 @@
 namespace patina {
 namespace {
 
-// Two digits: what a person would have typed.
+// Rounds to two digits, as a person would type.
 double rounded(double value) {
   if (!(value > 0)) return value;
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -18,7 +18,7 @@ double rounded(double value) {
 
 } // namespace
 
-void BrushPresets::suit(double extent, const HapticProperties& haptics) {
+void BrushPresets::scaleTo(double extent, const HapticProperties& haptics) {
   extent_ = extent;
   common_ = {};
   also_.clear();
@@ -33,7 +33,7 @@ void BrushPresets::suit(double extent, const HapticProperties& haptics) {
   own(Tool::color, 0);
   own_[Tool::color].color = {0.80, 0.22, 0.16};
   own(Tool::relief, rounded(std::clamp(0.006 * extent, 1e-4, 2e-3)));
-  for (const Channel& row : kChannels) own(Tool::material(row.channel), row.usual);
+  for (const Channel& row : kChannels) own(Tool::material(row.channel), row.default_value);
   own(Tool::material(MaterialChannel::stiffness), rounded(2.5 * haptics.stiffness));
   own(Tool::erase, 0);
 }
@@ -47,9 +47,9 @@ Brush BrushPresets::brush(Tool tool) const {
   brush.value = own->second.value;
   brush.mode = own->second.mode;
   brush.erases = own->second.erases;
-  brush.also.clear();
+  brush.extra_layers.clear();
   for (const Tool other : also_)
-    if (canJoin(brush, other)) brush.also.push_back(own_.at(other));
+    if (canJoin(brush, other)) brush.extra_layers.push_back(own_.at(other));
   return brush;
 }
 

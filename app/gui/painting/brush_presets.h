@@ -1,4 +1,4 @@
-// What each tool paints with: one size and shape for all of them, a value and a mode for each.
+// The brush of each tool: all share size and shape, each has its own value and mode.
 #pragma once
 
 #include <map>
@@ -11,16 +11,15 @@ namespace patina {
 
 class BrushPresets {
  public:
-  // Sizes that suit an object `extent` [m] long, and values that are felt beside the scene's own.
-  void suit(double extent, const HapticProperties& haptics);
+  // Sets sizes for an object `extent` [m] long, and values that differ from the scene's own.
+  void scaleTo(double extent, const HapticProperties& haptics);
 
   Brush brush(Tool tool) const;
-  // Of its tool; size and shape of all. What it paints also is painted with other tools, too, each
-  // layer with its own tool's value.
+  // Sets the brush of its tool, and size and shape of all. Other tools keep their values.
   void set(const Brush& brush);
 
   double extent() const { return extent_; }
-  double press = 0.8; // [N], with which the mouse presses the tool on
+  double press = 0.8; // Force with which the mouse presses the tool on [N].
 
  private:
   double extent_ = 0.1;
@@ -29,11 +28,11 @@ class BrushPresets {
   std::map<Tool, Brush> own_;
 };
 
-// Whether one stroke may lay on `tool` beside what the brush does.
+// True if a stroke of `brush` can also paint with `tool`.
 bool canJoin(const Brush& brush, Tool tool);
-// `brush` with what is painted at a place; only what its tool paints.
+// Returns `brush` with the painted value at a point, if its tool paints it.
 Brush picked(Brush brush, const SurfaceValues& values);
-// 0 < d < r where the weight is one half; 0 where it nowhere is.
+// Radius at which the weight is one half, 0 < d < r; 0 if there is none.
 double halfRadius(const Brush& brush, double radius);
 
 } // namespace patina

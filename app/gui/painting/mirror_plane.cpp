@@ -1,18 +1,18 @@
 #include "app/gui/painting/mirror_plane.h"
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 
 namespace patina {
 namespace {
-constexpr double kBeyond = 1.15; // of the box's sides
+constexpr double kBeyond = 1.15; // Size of the plane relative to the box.
 } // namespace
 
-MirrorPlace mirrorPlane(const SceneObject& object, Symmetry symmetry) {
+MirrorState mirrorPlane(const SceneObject& object, Symmetry symmetry) {
   const Box3 box = fieldBounds(*object.mesh);
   const int axis = static_cast<int>(symmetry) - static_cast<int>(Symmetry::x);
   const Vec3 half = 0.5 * kBeyond * box.sizes();
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  MirrorPlace corners;
+  MirrorState corners;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     Vec3 at = box.center();
     at[u] += k == 1 || k == 2 ? half[u] : -half[u];

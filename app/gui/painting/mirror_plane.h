@@ -1,4 +1,4 @@
-// Where the plane lies across which a brush is mirrored.
+// The plane across which a brush is mirrored.
 #pragma once
 
 #include "scene/scene.h"
@@ -7,7 +7,7 @@
 
 namespace patina {
 
-// Through the middle of the object's box and a little beyond it; symmetry is not none.
-MirrorPlace mirrorPlane(const SceneObject& object, Symmetry symmetry);
+// Returns a plane through the centre of the object's box. There must be a symmetry.
+MirrorState mirrorPlane(const SceneObject& object, Symmetry symmetry);
 
 } // namespace patina

@@ -3,41 +3,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/gui/control/touching.h"
 #include "app/gui/painting/mirror_plane.h"
 #include "app/gui/painting/recent_colors.h"
-#include "app/gui/widgets/words.h"
+#include "app/gui/state/contact_offset.h"
+#include "app/gui/toolkit/words.h"
 #include "authoring/brush/painter.h"
-#include "core/numbers.h"
-#include "haptics/devices/device_catalog.h"
+#include "haptics/catalog/device_catalog.h"
 #include "scene/surface_pick.h"
 #include "visualization/values/palette.h"
 
 namespace patina {
 namespace {
 
-// A button that is let go before the tip has come down: so long the tip may take. Ticks as well,
-// for it does not move while the machine has no time for it.
-constexpr int kLinger = 250; // [ms]
-constexpr std::size_t kLingerTicks = 250;
-// And so long in all, for a tip that does not follow the pointer never arrives.
-constexpr int kLongest = 5000; // [ms]
-// How fast a press gets deeper where the surface gets softer, at most.
-constexpr double kSinking = 0.05;     // [m/s]
-constexpr double kLongestStep = 0.03; // [s], also after a time in which nothing was followed
-// A tick this far from the path between samples, in radii, is a sample.
+// Time for which a released stroke waits for the tip; ticks, in case the servo is starved.
+constexpr int kGracePeriod = 250; // [ms]
+constexpr std::size_t kGraceTicks = 250;
+// The wait ends then, because a tip that does not follow the pointer never arrives.
+constexpr int kMaxGracePeriod = 5000; // [ms]
+// Limits how fast a press deepens on softer surface.
+constexpr double kSinking = 0.05;      // [m/s]
+constexpr double kMaxPressStep = 0.03; // Longest time step of a press, also after a pause [s].
+// A tick further than this from the chord becomes a sample [brush radii].
 constexpr double kOff = 0.003;
-
-QString number(double value) {
-  return QString::fromStdString(formatNumber(std::round(value * 1e4) / 1e4));
-}
-
-// "3 N s/m", "50 µm"
-QString measured(const Channel& row, double value) {
-  if (row.unit == "m") return inWords(value);
-  const QString unit = QString::fromStdString(std::string(row.unit));
-  return (number(value) + QStringLiteral(" ") + unit).trimmed();
-}
 
 } // namespace
 
@@ -45,7 +32,7 @@ PaintController::PaintController(const Parts& parts, QObject* parent)
     : QObject(parent), at_(parts) {
   connect(&at_.bar, &ToolBar::chosen, this, &PaintController::take);
   connect(&at_.view, &SceneWidget::pointed, this, &PaintController::follow);
-  connect(&at_.view, &SceneWidget::pickAsked, this, &PaintController::pickAt);
+  connect(&at_.view, &SceneWidget::pickRequested, this, &PaintController::pickAt);
   connect(&at_.panel, &BrushPanel::edited, this,
           [this](const Brush& brush) { presets_.set(brush); });
   connect(&at_.panel, &BrushPanel::pressed, this, &PaintController::setForce);
@@ -53,17 +40,17 @@ PaintController::PaintController(const Parts& parts, QObject* parent)
   connect(&at_.view, &SceneWidget::forceTurned, this,
           [this](double notches) { setForce(presets_.press + 0.1 * notches); });
   connect(&at_.view, &SceneWidget::escaped, this, &PaintController::escape);
-  connect(&at_.panel, &BrushPanel::toolAsked, this, [this](Tool tool) {
-    at_.bar.choose({Handling::paint, tool});
+  connect(&at_.panel, &BrushPanel::toolRequested, this, [this](Tool tool) {
+    at_.bar.choose({InteractionMode::paint, tool});
   });
 }
 
 void PaintController::take(const ToolChoice& choice) {
-  down_ = lingers_ = false;
-  send(tracker_.finish());
-  if (scene_ && newtons_ > 0) lift(); // or the next stroke would begin where this one did
-  presses_ = choice.handling == Handling::press;
-  if (choice.handling == Handling::paint) {
+  down_ = in_grace_ = false;
+  stopPainting();
+  if (scene_ && force_ > 0) lift(); // Otherwise the next stroke would begin here.
+  presses_ = choice.handling == InteractionMode::press;
+  if (choice.handling == InteractionMode::paint) {
     tool_ = choice.tool;
     at_.panel.show(brush(), presets_);
     if (scene_) at_.edits.prepare(tool_);
@@ -72,17 +59,20 @@ void PaintController::take(const ToolChoice& choice) {
   emit chosen(choice);
 }
 
-void PaintController::setScene(std::shared_ptr<const CompiledScene> scene, bool anew) {
+void PaintController::setScene(std::shared_ptr<const CompiledScene> scene, bool is_new) {
   scene_ = std::move(scene);
-  if (!anew || !scene_) return;
-  down_ = lingers_ = false;
-  tracker_ = {};
+  if (!scene_) {
+    down_ = in_grace_ = false;
+    stopPainting();
+  }
+  if (!is_new || !scene_) return;
+  down_ = in_grace_ = false;
   mirrored_ = 0;
   const Box3 box = bounds(*scene_->mesh);
-  presets_.suit(box.isEmpty() ? 0.1 : box.sizes().maxCoeff(), scene_->scene.haptics);
+  presets_.scaleTo(box.isEmpty() ? 0.1 : box.sizes().maxCoeff(), scene_->scene.haptics);
   at_.panel.show(brush(), presets_);
   at_.tool.setForce(presets_.press);
-  if (at_.bar.choice().handling == Handling::paint) at_.edits.prepare(tool_);
+  if (at_.bar.choice().handling == InteractionMode::paint) at_.edits.prepare(tool_);
 }
 
 void PaintController::setBrush(const Brush& brush) {
@@ -91,7 +81,7 @@ void PaintController::setBrush(const Brush& brush) {
 }
 
 void PaintController::resizeBrush(double factor) {
-  if (at_.bar.choice().handling != Handling::paint) return;
+  if (at_.bar.choice().handling != InteractionMode::paint) return;
   Brush changed = brush();
   changed.radius =
       std::clamp(changed.radius * factor, 1e-3 * presets_.extent(), 0.5 * presets_.extent());
@@ -99,7 +89,7 @@ void PaintController::resizeBrush(double factor) {
 }
 
 void PaintController::softenBrush(double factor) {
-  if (at_.bar.choice().handling != Handling::paint) return;
+  if (at_.bar.choice().handling != InteractionMode::paint) return;
   Brush changed = brush();
   changed.falloff = std::clamp(changed.falloff * factor, 0.25, 16.0);
   setBrush(changed);
@@ -108,144 +98,139 @@ void PaintController::softenBrush(double factor) {
 void PaintController::setForce(double newtons) {
   presets_.press = std::clamp(newtons, 0.1, 3.0);
   at_.tool.setForce(presets_.press);
-  if (newtons_ > 0) newtons_ = presets_.press; // felt with the next tick of the window
+  if (force_ > 0) force_ = presets_.press; // The next window tick applies it.
 }
 
 void PaintController::escape() {
-  down_ = lingers_ = false;
-  if (tracker_.painting()) at_.edits.cancelStroke();
-  tracker_.cancel();
+  down_ = in_grace_ = paints_ = false;
+  at_.edits.cancelPainting();
   if (scene_) lift();
 }
 
-std::optional<SurfaceValues> PaintController::valuesAt(const Vec3& surface, QString* object) const {
+std::optional<SurfaceValues> PaintController::valuesAt(const Vec3& surface) const {
   const auto joint = surfacePointAt(*scene_->built.field, *scene_->mesh, surface);
   const auto own = joint ? objectPointOf(scene_->scene, *joint) : std::nullopt;
   if (!own) return std::nullopt;
-  if (object) *object = QString::fromStdString(scene_->scene.objects[own->object].name);
   return surfaceValues(scene_->scene, own->object, own->point);
-}
-
-void PaintController::moveTip(const Vec3& target) {
-  at_.view.setTarget(target);
-  at_.feel.setTarget(target);
-}
-
-void PaintController::leapTip(const Vec3& target) {
-  at_.view.setTarget(target);
-  at_.feel.leapTarget(target, t_);
 }
 
 void PaintController::passTip(const Vec3& target) {
   if (target == at_.view.target()) return;
   at_.view.setTarget(target);
-  at_.feel.passTarget(target, t_);
+  at_.feel.addWaypoint(target, t_);
 }
 
 void PaintController::press(const Vec3& surface, double newtons) {
-  // Painted relief is followed, or an engraved place would be out of reach; what a texture adds to
-  // the force is felt.
+  // Includes painted relief, so that engraved places can be reached, but no texture.
   const auto values = valuesAt(surface);
-  // By the stiffness of the place, which is no answer of the servo: nothing can swing. From hard to
-  // soft it sinks slowly, so that it does not press on what is hard ahead of the pointer.
-  // Pointer and ticks both come here, so the time is neither's own: it must not count twice.
-  const bool begins = newtons_ == 0, presses = newtons > 0; // a pen may only touch
-  const double softness = presses ? pressDepth(*scene_, surface, newtons) / newtons : 0;
+  // The depth follows from the local stiffness, not from the servo's force, so there is no feedback
+  // loop. It grows slowly on softer surface, because the tip lags behind the pointer. Pointer and
+  // ticks both call this, so the elapsed time is measured here.
+  const bool begins = force_ == 0, presses = newtons > 0; // A pen may touch without pressure.
+  const double compliance = presses ? pressDepth(*scene_, surface, newtons) / newtons : 0;
   const double seconds =
       pressed_.isValid()
-          ? std::min(1e-9 * static_cast<double>(pressed_.nsecsElapsed()), kLongestStep)
+          ? std::min(1e-9 * static_cast<double>(pressed_.nsecsElapsed()), kMaxPressStep)
           : 0;
   pressed_.start();
-  softness_ =
-      begins || !presses ? softness : std::min(softness, softness_ + kSinking * seconds / newtons);
-  double depth = newtons * softness_;
-  // A simulated hand is a spring itself: it must reach deeper for the same force.
+  compliance_ = begins || !presses
+                    ? compliance
+                    : std::min(compliance, compliance_ + kSinking * seconds / newtons);
+  double depth = newtons * compliance_;
+  // A simulated hand is a spring itself, so the target must be deeper for the same force.
   depth += newtons * deviceNamed(scene_->scene.device).hand_compliance;
   const SurfaceField& field = *scene_->built.field;
   depth = std::min(depth, 0.5 * field.band * field.grid.voxel);
   aim_ = surface;
   if (begins) {
-    // It comes down here, from above: on a straight way it would go through the object.
+    // Starts above the surface, because a straight path could pass through the object.
+    touched_ = false;
     begin_ = surface;
     leapTip(lifted());
   }
-  newtons_ = newtons;
-  const double below = depth - skinOf(scene_->scene.haptics) - (values ? values->height : 0);
-  passTip(surface - depthWithin(*scene_, surface, below) * normalAt(*scene_, surface));
+  force_ = newtons;
+  const double below = depth - contactOffset(scene_->scene.haptics) - (values ? values->height : 0);
+  passTip(surface - clampedDepth(*scene_, surface, below) * normalAt(*scene_, surface));
 }
 
 Vec3 PaintController::lifted() const {
   const HapticProperties& haptics = scene_->scene.haptics;
-  const double skin = skinOf(haptics) + (haptics.magnet ? haptics.magnet->range : 0);
+  const double offset = contactOffset(haptics) + (haptics.magnet ? haptics.magnet->range : 0);
   const auto values = valuesAt(aim_);
   const double raised = values ? std::max(0.0, values->height) : 0;
-  return aim_ + (skin + raised + 0.02 * presets_.extent()) * normalAt(*scene_, aim_);
+  return aim_ + (offset + raised + 0.02 * presets_.extent()) * normalAt(*scene_, aim_);
 }
 
 void PaintController::lift() {
-  newtons_ = 0;
-  moveTip(lifted());
+  force_ = 0;
+  const Vec3 target = lifted();
+  at_.view.setTarget(target);
+  at_.feel.setTarget(target);
 }
 
 void PaintController::follow(const Pointed& where) {
   if (!scene_) return;
   t_ = where.t;
   const auto raise = [this] {
-    newtons_ = 0;
+    force_ = 0;
     passTip(lifted());
   };
   if (where.down) {
     down_ = true;
-    lingers_ = false;
+    in_grace_ = false;
     if (where.surface)
       press(*where.surface, presets_.press * where.pressure);
     else
-      raise(); // beside the object: the stroke ends with its contact
+      raise(); // The contact ends, and with it the stroke.
   } else if (down_) {
     down_ = false;
     if (presses_) return raise();
-    lingers_ = true;
+    in_grace_ = true;
     released_.start();
-    lingered_ = 0;
+    grace_ticks_ = 0;
   }
+  if (at_.bar.choice().handling == InteractionMode::paint) sendHand(true);
 }
 
 bool PaintController::arrived(const std::vector<ToolSample>& ticks) const {
-  return tracker_.painting() && at_.feel.passed() && !ticks.empty() &&
-         (ticks.back().surface - aim_).norm() < 0.01 * brush().radius; // or the end is cut
+  return touched_ && at_.feel.passed() && !ticks.empty() &&
+         // Otherwise the end of the stroke would be cut off.
+         (ticks.back().surface - aim_).norm() < 0.01 * brush().radius;
 }
 
-void PaintController::send(const std::vector<StrokePiece>& pieces) {
-  for (const StrokePiece& piece : pieces) {
-    if (piece.begins) at_.edits.beginStroke(brush());
-    at_.edits.dabs(piece.samples);
-    if (piece.ends) at_.edits.endStroke();
-  }
+void PaintController::sendHand(bool paints) {
+  paints_ = true;
+  const double near = std::max(brush().radius, 0.02 * presets_.extent());
+  at_.edits.paint({down_ || in_grace_, begin_, near, kOff * brush().radius, paints}, brush());
 }
 
 void PaintController::feed(const std::vector<ToolSample>& ticks) {
   if (!ticks.empty()) last_ = ticks.back();
+  touched_ = touched_ || std::any_of(ticks.begin(), ticks.end(),
+                                     [](const ToolSample& tick) { return tick.contact; });
   if (!scene_) return;
-  if (newtons_ > 0 && (down_ || lingers_)) press(aim_, newtons_); // the surface may have changed
+  if (force_ > 0 && (down_ || in_grace_)) press(aim_, force_); // The surface may have changed.
   if (presses_) return;
-  const double near = std::max(brush().radius, 0.02 * presets_.extent());
-  const bool paints = at_.bar.choice().handling == Handling::paint;
-  send(tracker_.feed(ticks, {down_ || lingers_, begin_, near, kOff * brush().radius, paints}));
-  const bool waits = lingers_ && !at_.feel.passed(); // for a tip that is still on its way
-  const bool over = (!waits && lingered_ > kLingerTicks && released_.elapsed() > kLinger) ||
-                    released_.elapsed() > kLongest;
-  lingered_ += waits ? 0 : ticks.size(); // only after: the first may be from before the button
-  if (!lingers_ || !(arrived(ticks) || over)) return;
-  lingers_ = false;
-  send(tracker_.finish());
+  const bool paints = at_.bar.choice().handling == InteractionMode::paint;
+  if (paints || down_ || in_grace_)
+    sendHand(paints);
+  else
+    stopPainting();
+  const bool waits = in_grace_ && !at_.feel.passed(); // The tip is still on its path.
+  const bool over = (!waits && grace_ticks_ > kGraceTicks && released_.elapsed() > kGracePeriod) ||
+                    released_.elapsed() > kMaxGracePeriod;
+  grace_ticks_ += waits ? 0 : ticks.size(); // The first ticks may be older than the release.
+  if (!in_grace_ || !(arrived(ticks) || over)) return;
+  in_grace_ = false;
+  stopPainting();
   lift();
 }
 
 void PaintController::refresh() {
-  const bool paints = scene_ && at_.bar.choice().handling == Handling::paint;
+  const bool paints = scene_ && at_.bar.choice().handling == InteractionMode::paint;
   const auto surface = scene_ ? at_.view.underPointer() : std::nullopt;
-  if ((paints || (scene_ && presses_)) && surface && !down_ && !lingers_ &&
-      at_.feel.passed()) { // the tool hovers where it would paint
+  if ((paints || (scene_ && presses_)) && surface && !down_ && !in_grace_ &&
+      at_.feel.passed()) { // The tool hovers where it would paint.
     aim_ = *surface;
     leapTip(lifted());
   }
@@ -253,8 +238,9 @@ void PaintController::refresh() {
     if (const auto joint = surfacePointAt(*scene_->built.field, *scene_->mesh, *surface))
       if (const auto own = objectPointOf(scene_->scene, *joint)) mirrored_ = own->object;
   showMirror(paints);
-  showCursor(!paints ? std::nullopt : tracker_.painting() ? std::optional(last_.surface) : surface);
-  if (refreshes_++ % 3 == 0) emit underPointer(surface ? wordsFor(*surface) : QString());
+  showCursor(!paints                ? std::nullopt
+             : at_.edits.painting() ? std::optional(last_.surface)
+                                    : surface);
 }
 
 void PaintController::showMirror(bool paints) {
@@ -269,7 +255,7 @@ void PaintController::showCursor(const std::optional<Vec3>& surface) {
   if (!surface) return at_.view.view().setBrush(std::nullopt);
   const Brush now = brush();
   const double radius = brushRadius(now, last_.contact ? last_.force.norm() : presets_.press);
-  BrushPlace place{
+  BrushCursorState place{
       *surface, normalAt(*scene_, *surface), radius, halfRadius(now, radius), {1, 1, 1}};
   if (now.tool == Tool::color) place.color = now.color;
   at_.view.view().setBrush(place);
@@ -283,37 +269,9 @@ void PaintController::pickAt(const Vec3& surface) {
       rememberColor(QColor::fromRgbF(taken.color[0], taken.color[1], taken.color[2]));
     setBrush(taken);
   }
-  // The eyedropper is used once: what was picked is painted with next.
-  if (at_.bar.choice().handling == Handling::pick) at_.bar.choose({Handling::paint, tool_});
-}
-
-QString PaintController::wordsFor(const Vec3& surface) const {
-  QString object;
-  const auto values = valuesAt(surface, &object);
-  if (!values) return {};
-  const Material& m = values->material;
-  QStringList words{object, tr("%1 N/m").arg(m.stiffness, 0, 'f', 0)};
-  if (m.static_friction > 0 || m.dynamic_friction > 0)
-    words << tr("friction %1 / %2").arg(number(m.static_friction), number(m.dynamic_friction));
-  for (const Channel& row : kChannels) {
-    const double value = valueOf(m, row.channel);
-    if (row.channel <= MaterialChannel::dynamic_friction || !(value > 0)) continue; // above
-    const bool rough = row.channel == MaterialChannel::roughness;
-    const QString what = rough ? tr("rough") : captionOf(Tool::material(row.channel));
-    words << what + QStringLiteral(" ") + measured(row, value);
-  }
-  if (values->height != 0)
-    words << tr("relief %1 mm").arg(shownAs(1000 * values->height, 3), 0, 'f', 3);
-  if (values->color[3] > 0) {
-    const double cover = values->color[3];
-    words << tr("colour %1")
-                 .arg(QColor::fromRgbF(std::min(1.0, values->color[0] / cover),
-                                       std::min(1.0, values->color[1] / cover),
-                                       std::min(1.0, values->color[2] / cover))
-                          .name());
-    if (cover < 0.995) words.back() += tr(" at %1 %").arg(100 * cover, 0, 'f', 0);
-  }
-  return words.join(QStringLiteral(" · "));
+  // The eyedropper works once; then the picked value is painted.
+  if (at_.bar.choice().handling == InteractionMode::pick)
+    at_.bar.choose({InteractionMode::paint, tool_});
 }
 
 } // namespace patina

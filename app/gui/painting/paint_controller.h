@@ -1,4 +1,4 @@
-// Painting in the window: the tool that is chosen, its brush, and the hand that paints with it.
+// Painting in the window: the current tool, its brush, and the pointer that paints with it.
 #pragma once
 
 #include <memory>
@@ -9,17 +9,16 @@
 
 #include "app/gui/painting/brush_panel.h"
 #include "app/gui/painting/brush_presets.h"
-#include "app/gui/painting/stroke_tracker.h"
+#include "app/gui/panels/tool_bar.h"
 #include "app/gui/panels/tool_panel.h"
-#include "app/gui/widgets/scene_widget.h"
-#include "app/gui/window/tool_bar.h"
+#include "app/gui/toolkit/scene_widget.h"
 #include "haptics/servo/tip_servo.h"
 #include "session/edit/edit_thread.h"
 
 namespace patina {
 
-// Painting is feeling: the pointer presses the tool onto the surface under it, the servo feels
-// that, and where it feels contact the brush paints. All of these outlive it.
+// The pointer presses the tool onto the surface under it. The servo computes the contact, and the
+// brush paints while there is contact. All parts outlive this object.
 class PaintController : public QObject {
   Q_OBJECT
  public:
@@ -33,16 +32,15 @@ class PaintController : public QObject {
   };
   explicit PaintController(const Parts& parts, QObject* parent = nullptr);
 
-  void setScene(std::shared_ptr<const CompiledScene> scene, bool anew); // null: none
-  void feed(const std::vector<ToolSample>& ticks); // of every window tick, be there any or none
-  void refresh();                                  // brush cursor and what is under the pointer
+  void setScene(std::shared_ptr<const CompiledScene> scene, bool is_new); // nullptr: none.
+  void feed(const std::vector<ToolSample>& ticks); // Called on each tick of the window.
+  void refresh();                                  // Updates the brush cursor.
   void resizeBrush(double factor);
   void softenBrush(double factor);
-  void setForce(double newtons); // with which the mouse presses the tool on
+  void setForce(double newtons); // Force of the mouse [N].
 
  signals:
   void chosen(const patina::ToolChoice& choice);
-  void underPointer(const QString& words); // empty: nothing
 
  private:
   void take(const ToolChoice& choice);
@@ -51,37 +49,41 @@ class PaintController : public QObject {
   void pickAt(const Vec3& surface);
   void follow(const Pointed& where);
   void press(const Vec3& surface, double newtons);
-  Vec3 lifted() const; // the place over the aim
-  void lift();         // there at once
-  void escape();       // the stroke is taken back
-  void moveTip(const Vec3& target);
-  void leapTip(const Vec3& target); // above what it would go through
-  void passTip(const Vec3& target); // when it is that event's turn
-  std::optional<SurfaceValues> valuesAt(const Vec3& surface, QString* object = nullptr) const;
+  Vec3 lifted() const;               // The point above the aim.
+  void lift();                       // Moves the tip there at once.
+  void escape();                     // Cancels the stroke.
+  void leapTip(const Vec3& target) { // Jumps, so that the tip does not pass through the object.
+    at_.view.setTarget(target);
+    at_.feel.jumpTarget(target, t_);
+  }
+  void passTip(const Vec3& target); // Moves when the servo reaches this event's time.
+  std::optional<SurfaceValues> valuesAt(const Vec3& surface) const;
   bool arrived(const std::vector<ToolSample>& ticks) const;
-  void send(const std::vector<StrokePiece>& pieces);
+  void sendHand(bool paints); // Tells the edit thread how the pointer holds the brush.
+  void stopPainting() {
+    if (std::exchange(paints_, false)) at_.edits.finishPainting();
+  }
   void showMirror(bool paints);
   void showCursor(const std::optional<Vec3>& surface);
-  QString wordsFor(const Vec3& surface) const;
 
   Parts at_;
   std::shared_ptr<const CompiledScene> scene_;
   BrushPresets presets_;
-  Tool tool_ = Tool::color; // of the brush, also while something else is chosen
-  StrokeTracker tracker_;
-  Vec3 aim_ = Vec3::Zero();   // on the surface
-  Vec3 begin_ = Vec3::Zero(); // the aim when the tip was pressed on
-  double t_ = 0;              // [s], of the pointer
-  double newtons_ = 0;        // with which it is pressed there; 0: it is not
-  double softness_ = 0;       // of what it is pressed on [m/N]
-  QElapsedTimer pressed_;     // since that was followed last
-  bool down_ = false, lingers_ = false;
-  bool presses_ = false; // and paints nothing
+  Tool tool_ = Tool::color;   // The brush's tool, even while another one is in use.
+  bool paints_ = false;       // The edit thread follows the hand.
+  bool touched_ = false;      // A tick was in contact since pressing began.
+  Vec3 aim_ = Vec3::Zero();   // Point on the surface.
+  Vec3 begin_ = Vec3::Zero(); // The aim when pressing began.
+  double t_ = 0;              // Time of the pointer [s].
+  double force_ = 0;          // Pressing force [N]; 0: not pressed.
+  double compliance_ = 0;     // Compliance at the aim [m/N].
+  QElapsedTimer pressed_;     // Time since the last press.
+  bool down_ = false, in_grace_ = false;
+  bool presses_ = true; // Presses without painting.
   QElapsedTimer released_;
-  std::size_t lingered_ = 0; // ticks since then
+  std::size_t grace_ticks_ = 0; // Ticks since the release.
   ToolSample last_;
-  std::size_t mirrored_ = 0; // the object that was pointed at last
-  int refreshes_ = 0;
+  std::size_t mirrored_ = 0; // The object that was pointed at last.
 };
 
 } // namespace patina

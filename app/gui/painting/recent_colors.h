@@ -1,4 +1,4 @@
-// The colours that were chosen last beside the swatches, kept between sessions.
+// The last colours that are no swatches, stored between sessions.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace patina {
 
-std::vector<QColor> recentColors(); // the newest first, eight at most
+std::vector<QColor> recentColors(); // The newest first, at most eight.
 void rememberColor(const QColor& color);
 
 } // namespace patina

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <optional>
 
-#include "app/gui/widgets/words.h"
-#include "app/gui/window/theme.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/theme.h"
+#include "app/gui/toolkit/words.h"
 #include "authoring/relief/relief_limits.h"
 
 namespace patina {
@@ -27,13 +28,13 @@ bool sameRelief(const CompiledScene& a, const CompiledScene& b) {
   return true;
 }
 
-// The object whose relief is nearest to its limit, or the highest one where there is no device.
+// Returns the object whose relief is nearest to its limit, or the highest one without a device.
 std::optional<ReliefLimit> worstLimit(const CompiledScene& compiled, const Progress& progress) {
   std::optional<ReliefLimit> worst;
   const auto severity = [](const ReliefLimit& limit) {
     return limit.admissible ? limit.highest / std::max(*limit.admissible, 1e-12) : limit.highest;
   };
-  const auto& felt = compiled.paint.relief; // smoothed if asked for: what a hand has to bear
+  const auto& felt = compiled.paint.relief; // Smoothed if the scene requests it.
   for (std::size_t i = 0; i < felt.size(); ++i) {
     progress.throwIfCancelled();
     if (!felt[i].felt) continue;
@@ -49,18 +50,8 @@ std::optional<ReliefLimit> worstLimit(const CompiledScene& compiled, const Progr
 } // namespace
 
 ReliefPanel::ReliefPanel(QWidget* parent)
-    : QGroupBox(tr("Relief"), parent), layout_(new QVBoxLayout(this)), note_(new QLabel(this)) {
-  layout_->setContentsMargins(0, 0, 0, 0);
-  note_->setObjectName(QStringLiteral("relief_note"));
-  note_->setWordWrap(true);
-  note_->hide();
-  layout_->addWidget(note_);
-  connect(&jobs_, &Background::rested, this, &ReliefPanel::rested);
-}
-
-void ReliefPanel::cancel() {
-  jobs_.silence();
-}
+    : QGroupBox(tr("Relief"), parent), layout_(layoutIn<QVBoxLayout>(this)),
+      note_(addNote(layout_, "relief_note", "")) {}
 
 void ReliefPanel::show(std::shared_ptr<const CompiledScene> scene) {
   if (form_ == nullptr || !(scene->scene.relief == relief_)) {
@@ -74,16 +65,13 @@ void ReliefPanel::rebuild() {
   takeAway(form_);
   form_ = new Form(this);
   connect(form_, &Form::edited, this, [this] { emit edited(relief_); });
-  const double height = std::abs(relief_.height), most = std::max(5.0, 4000 * height);
-  form_->addRow({"relief_height",
-                 tr("Height of full relief"),
-                 QStringLiteral("mm"),
-                 {0, most, most / 100, 2},
-                 1000,
-                 tr("Scales all of it: painted heights are shares of this one")},
-                height,
-                [this](double now) { relief_.height = std::copysign(now, relief_.height); });
-  form_->addCheck("relief_inverted", tr("Inverted"), tr("What was raised is engraved"),
+  const double height = std::abs(relief_.height), max_height = std::max(5.0, 4000 * height);
+  form_->addRow(
+      RowSpec("relief_height", tr("Height of full relief"), QStringLiteral("mm"),
+              {0, max_height, max_height / 100, 2},
+              tr("Scales all relief: painted heights are fractions of this height"), 1000),
+      height, [this](double now) { relief_.height = std::copysign(now, relief_.height); });
+  form_->addCheck("relief_inverted", tr("Inverted"), tr("Raised relief becomes engraved"),
                   std::signbit(relief_.height), [this](bool on) {
                     relief_.height = std::copysign(relief_.height, on ? -1.0 : 1.0);
                   });
@@ -94,37 +82,36 @@ void ReliefPanel::rebuild() {
         [&value, first, second](int index) { value = index == 0 ? first : second; }, tip);
   };
   add("relief_source", tr("Taken from"), {tr("what is painted"), tr("the colour")}, relief_.source,
-      ReliefFrom::color, ReliefFrom::painted,
-      tr("The colour: its grey value is felt as height, bright is high, and what is not painted "
-         "or black stays as it is."));
+      ReliefSource::color, ReliefSource::painted,
+      tr("Colour: the grey value is rendered as height, bright is high. Black or unpainted places "
+         "have no relief."));
   add("relief_mode", tr("Felt"), {tr("from the image"), tr("baked into the field")}, relief_.mode,
       ReliefMode::baked, ReliefMode::pulled,
-      tr("From the image: read at each contact, as fine as it is painted. Baked: the field is "
-         "moved, as in the paper; costs nothing a tick, and loses what is finer than 8 voxels."));
+      tr("From the image: evaluated at each contact, with the full resolution of the paint. Baked: "
+         "moves the field, as in the paper; costs no time in the servo, but loses details below 8 "
+         "voxels."));
   add("relief_force", tr("Force"), {tr("conservative"), tr("literal")}, relief_.form,
       ForceForm::literal, ForceForm::conservative,
-      tr("Conservative: the force has a potential, no loop does work. Literal: as the papers "
-         "have it."));
-  form_->addRow({"relief_smoothing",
-                 tr("Smoothing"),
-                 QStringLiteral("mm"),
-                 {0, 5, 0.05, 2},
-                 1000,
-                 tr("Of what is felt: a Gaussian's standard deviation along the surface")},
+      tr("Conservative: the force has a potential, and a closed path does no work. Literal: as in "
+         "the papers."));
+  form_->addRow(RowSpec("relief_smoothing", tr("Smoothing"), QStringLiteral("mm"), {0, 5, 0.05, 2},
+                        tr("Smoothing of the rendered relief: standard deviation of a Gaussian "
+                           "along the surface"),
+                        1000),
                 relief_.smoothing);
   layout_->insertWidget(0, form_);
 }
 
 void ReliefPanel::measure(std::shared_ptr<const CompiledScene> scene) {
   measured_ = scene;
-  if (jobs_.busy()) return; // its turn comes when this one has ended
-  jobs_.start([this, scene](Progress& progress, const Background::Deliver& deliver) {
+  if (jobs_.busy()) return; // It starts when this one has ended.
+  jobs_.start([this, scene](Progress& progress, const Background::Post& post) {
     std::optional<ReliefLimit> limit;
     try {
       limit = worstLimit(*scene, progress);
-    } catch (const std::exception&) { // cancelled, or too large to be measured: nothing is said
+    } catch (const std::exception&) { // Cancelled, or too large to be measured: no note.
     }
-    deliver(true, [this, limit, scene] {
+    post(true, [this, limit, scene] {
       if (measured_ != scene) measure(measured_);
       note_->setVisible(limit.has_value());
       if (!limit) return;
@@ -132,16 +119,16 @@ void ReliefPanel::measure(std::shared_ptr<const CompiledScene> scene) {
       QString words = tr("Highest: %1.").arg(inWords(limit->highest));
       const QString press = QString::number(scene->scene.haptics.force_limit);
       if (limit->admissible)
-        words += beyond
-                     ? tr(" Beyond %1 it may buzz on this device when it is pressed with %2 N, the "
-                          "force limit: lower it, or smooth it.")
-                           .arg(inWords(*limit->admissible), press)
-                     : tr(" Up to %1 is calm on this device at %2 N, the force limit.")
-                           .arg(inWords(*limit->admissible), press);
+        words += beyond ? tr(" Above %1 it may be unstable on this device at %2 N, the force "
+                             "limit: lower or smooth it.")
+                              .arg(inWords(*limit->admissible), press)
+                        : tr(" Up to %1 it is stable on this device at %2 N, the force limit.")
+                              .arg(inWords(*limit->admissible), press);
       note_->setText(words);
       note_->setProperty("bad", beyond);
       note_->setProperty("quiet", !beyond);
-      dress(*note_, beyond ? QStringLiteral("color: @bad;") : QStringLiteral("color: @quiet;"));
+      applyStyleSheet(*note_,
+                      beyond ? QStringLiteral("color: @bad;") : QStringLiteral("color: @quiet;"));
     });
   });
 }

@@ -1,4 +1,4 @@
-// How painted relief is felt, and how high it may be.
+// Settings of painted relief, and its largest stable height.
 #pragma once
 
 #include <memory>
@@ -7,10 +7,10 @@
 #include <QLabel>
 #include <QVBoxLayout>
 
-#include "app/gui/panels/form.h"
-#include "app/gui/window/background.h"
+#include "app/gui/toolkit/background.h"
+#include "app/gui/toolkit/form.h"
 #include "scene/paint/relief_settings.h"
-#include "session/build/compile_scene.h"
+#include "session/compile/compile_scene.h"
 
 namespace patina {
 
@@ -19,14 +19,11 @@ class ReliefPanel : public QGroupBox {
  public:
   explicit ReliefPanel(QWidget* parent = nullptr);
 
-  // Sends no signal; the note follows as soon as it is computed.
-  void show(std::shared_ptr<const CompiledScene> scene);
-  bool resting() const { return jobs_.resting(); }
-  void cancel();
+  void show(std::shared_ptr<const CompiledScene> scene); // Sends no signal.
+  void cancel() { jobs_.discardResult(); }
 
  signals:
   void edited(const patina::ReliefSettings& relief);
-  void rested();
 
  private:
   void rebuild();
@@ -36,8 +33,9 @@ class ReliefPanel : public QGroupBox {
   QVBoxLayout* layout_;
   QLabel* note_;
   Form* form_ = nullptr;
-  std::shared_ptr<const CompiledScene> measured_; // the newest that the note is or will be of
-  Background jobs_;
+  // The newest scene whose note is shown or computed.
+  std::shared_ptr<const CompiledScene> measured_;
+  Background jobs_{this};
 };
 
 } // namespace patina

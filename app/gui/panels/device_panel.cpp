@@ -3,16 +3,60 @@
 #include <cmath>
 #include <utility>
 
-#include <QDoubleSpinBox>
+#include <QApplication>
+#include <QClipboard>
+#include <QHBoxLayout>
+#include <QProcess>
 #include <QSignalBlocker>
+#include <QStandardPaths>
 
-#include "app/gui/panels/value_row.h"
-#include "haptics/devices/device_catalog.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/value_row.h"
+#include "app/gui/toolkit/words.h"
+#include "core/error.h"
+#include "core/loaded_library.h"
+#include "haptics/catalog/device_catalog.h"
 
 namespace patina {
 namespace {
 
-// In the order of the list that a person chooses from.
+QString buttonFor(Remedy remedy) {
+  switch (remedy) {
+  case Remedy::use:
+    return tr("Use it");
+  case Remedy::allow:
+    return tr("Allow…");
+  case Remedy::look_again:
+    return tr("Look again");
+  case Remedy::none:
+    break;
+  }
+  return {};
+}
+
+AttachedRow rowFor(const UsbCheck& check) {
+  const UsbDevice& device = check.device;
+  AttachedRow row{shownText(device.name + ": " + stateText(check)), shownText(device.name)};
+  if (check.refusal) {
+    row.remedy = check.refusal == UsbAccessError::permission ? Remedy::allow : Remedy::look_again;
+    row.tip = shownText(usbAdvice(*check.refusal, device.vendor, device.product));
+    return row;
+  }
+  const Percentiles us = percentiles(check.round_trips);
+  row.tip = tr("%1 Mbit/s, answers within %2 µs, 99 of 100 times within %3 µs")
+                .arg(device.megabits)
+                .arg(us.p50, 0, 'f', 0)
+                .arg(us.p99, 0, 'f', 0);
+  for (const DeviceEntry& driver : deviceCatalog()) {
+    if (driver.usb != device.haptic) continue;
+    row.remedy = Remedy::use;
+    row.device = driver.name;
+  }
+  if (device.haptic == kProbeName) row.words += tr(", for the Record card: usb:");
+  return row;
+}
+
+// Names, ordered as in the list.
 const std::optional<Stabilisers> kStabilisers[] = {
     std::nullopt, Stabilisers{false, false}, Stabilisers{true, false}, Stabilisers{false, true},
     Stabilisers{true, true}};
@@ -21,34 +65,53 @@ struct Number {
   const char* name;
   QString caption, tip, unit;
   double per_unit; // SI
-  double low, high, step;
-  int decimals;
-  double (*get)(const DeviceModel&);
-  void (*set)(DeviceModel&, double);
+  RowRange range;
+  double DeviceModel::*value; // nullptr: the delay, which is a whole number.
 };
 
 std::vector<Number> numbers() {
-  const auto tr = [](const char* words) { return DevicePanel::tr(words); };
-  return {{"device_mass", tr("Mass"), tr("Of the part that a hand moves"), QStringLiteral("g"),
-           1e-3, 1, 5000, 10, 0, [](const DeviceModel& m) { return m.mass; },
-           [](DeviceModel& m, double v) { m.mass = v; }},
-          {"device_damping", tr("Damping"), tr("Of the device itself, against its speed"),
-           QStringLiteral("N s/m"), 1, 0, 100, 0.1, 2,
-           [](const DeviceModel& m) { return m.damping; },
-           [](DeviceModel& m, double v) { m.damping = v; }},
-          {"device_coulomb", tr("Dry friction"), tr("Of the device itself, whatever its speed"),
-           QStringLiteral("N"), 1, 0, 10, 0.05, 2, [](const DeviceModel& m) { return m.coulomb; },
-           [](DeviceModel& m, double v) { m.coulomb = v; }},
-          {"device_encoder", tr("Encoder step"), tr("The smallest step that it reports"),
-           QStringLiteral("µm"), 1e-6, 0, 1000, 5, 1,
-           [](const DeviceModel& m) { return m.encoder_step; },
-           [](DeviceModel& m, double v) { m.encoder_step = v; }},
-          {"device_rate", tr("Rate"), tr("How often a second it is served"), QStringLiteral("Hz"),
-           1, 100, 10000, 100, 0, [](const DeviceModel& m) { return m.rate; },
-           [](DeviceModel& m, double v) { m.rate = v; }},
-          {"device_delay", tr("Delay"), tr("How many samples late a force acts"), tr("samples"), 1,
-           0, 20, 1, 0, [](const DeviceModel& m) { return static_cast<double>(m.delay); },
-           [](DeviceModel& m, double v) { m.delay = static_cast<int>(std::lround(v)); }}};
+  return {{"device_mass",
+           tr("Mass"),
+           tr("Mass of the part that the hand moves"),
+           QStringLiteral("g"),
+           1e-3,
+           {1, 5000, 10, 0},
+           &DeviceModel::mass},
+          {"device_damping",
+           tr("Damping"),
+           tr("Viscous damping of the device itself"),
+           QStringLiteral("N s/m"),
+           1,
+           {0, 100, 0.1, 2},
+           &DeviceModel::damping},
+          {"device_coulomb",
+           tr("Dry friction"),
+           tr("Coulomb friction of the device itself"),
+           QStringLiteral("N"),
+           1,
+           {0, 10, 0.05, 2},
+           &DeviceModel::coulomb},
+          {"device_encoder",
+           tr("Encoder step"),
+           tr("Resolution of the device's position"),
+           QStringLiteral("µm"),
+           1e-6,
+           {0, 1000, 5, 1},
+           &DeviceModel::encoder_step},
+          {"device_rate",
+           tr("Rate"),
+           tr("Update rate of the device"),
+           QStringLiteral("Hz"),
+           1,
+           {100, 10000, 100, 0},
+           &DeviceModel::rate},
+          {"device_delay",
+           tr("Delay"),
+           tr("Delay of the force"),
+           tr("samples"),
+           1,
+           {0, 20, 1, 0},
+           nullptr}};
 }
 
 QString newtonsPerMetre(double value) {
@@ -73,57 +136,155 @@ QString wordsFor(const StabiliserPlan& plan) {
 
 } // namespace
 
+AttachedFindings lookForDevices() {
+  AttachedFindings found;
+  try {
+    for (const UsbDevice& device : listUsbDevices())
+      if (!device.haptic.empty()) found.usb.push_back(checkUsb(device));
+  } catch (const DeviceError& error) {
+    found.problem = error.what();
+  }
+  found.serial = listSerialProbes();
+  found.plugins = installedPlugins();
+  return found;
+}
+
+std::vector<AttachedRow> attachedRows(const AttachedFindings& findings) {
+  std::vector<AttachedRow> rows;
+  for (const UsbCheck& check : findings.usb) rows.push_back(rowFor(check));
+  for (const SerialProbe& probe : findings.serial)
+    rows.push_back({shownText(probe.path + ": " + probe.name +
+                              (probe.openable ? ", ready" : ", no permission")),
+                    probe.openable ? tr("For the Record card: serial: before its path")
+                                   : tr("A udev rule or the group dialout gives the permission"),
+                    probe.openable ? Remedy::none : Remedy::allow});
+  for (const PluginFound& plugin : findings.plugins)
+    if (!plugin.problem.empty())
+      rows.push_back({shownText("plugin:" + plugin.name + tr(" cannot be used").toStdString()),
+                      shownText(plugin.problem), Remedy::look_again});
+  if (!findings.problem.empty())
+    rows.push_back({tr("USB cannot be read"), shownText(findings.problem), Remedy::look_again});
+  else if (findings.usb.empty())
+    rows.push_back({tr("No haptic device is attached"), tr("Plug one in, and look again"),
+                    Remedy::look_again});
+  return rows;
+}
+
+AttachedDevices::AttachedDevices(QWidget* parent)
+    : QWidget(parent), column_(layoutIn<QVBoxLayout>(this)) {
+  setObjectName(QStringLiteral("attached"));
+}
+
+void AttachedDevices::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  if (!std::exchange(looked_, true)) look();
+  if (watch_) return;
+  watch_ = watchUsb([this] {
+    QMetaObject::invokeMethod(this, [this] { isVisible() ? look() : void(looked_ = false); });
+  });
+}
+
+void AttachedDevices::look() {
+  setRows({{tr("Looking for devices…"), {}}});
+  background_.start([this](Progress&, const Background::Post& post) {
+    post(true, [this, found = lookForDevices()] { show(found); });
+  });
+}
+
+void AttachedDevices::show(const AttachedFindings& findings) {
+  setRows(attachedRows(findings));
+  emit pluginsFound(findings.plugins);
+}
+
+void AttachedDevices::setRows(const std::vector<AttachedRow>& rows) {
+  takeAway(std::exchange(rows_, new QWidget(this)));
+  auto* list = layoutIn<QVBoxLayout>(rows_, 2);
+  for (const AttachedRow& row : rows) {
+    auto* line = new QHBoxLayout;
+    QLabel* label = quietLabel(row.words);
+    label->setWordWrap(true);
+    label->setToolTip(row.tip);
+    line->addWidget(label, 1);
+    if (row.remedy != Remedy::none) {
+      auto* button = new QPushButton(buttonFor(row.remedy), rows_);
+      button->setToolTip(row.tip);
+      connect(button, &QPushButton::clicked, this, [this, row] {
+        if (row.remedy == Remedy::use)
+          emit useRequested(row.device);
+        else if (row.remedy == Remedy::allow)
+          allow();
+        else
+          look();
+      });
+      line->addWidget(button);
+    }
+    list->addLayout(line);
+  }
+  column_->addWidget(rows_);
+}
+
+// Installs the udev rule as this user, or with the system's password dialog, or shows the command.
+void AttachedDevices::allow() {
+  const QString next = tr("Unplug the device and plug it in again");
+  try {
+    installUdevRules(kUdevFolder);
+    QProcess::execute(QStringLiteral("udevadm"),
+                      {QStringLiteral("control"), QStringLiteral("--reload")});
+    return setRows({{next, {}, Remedy::look_again}});
+  } catch (const Error&) { // The user is not root.
+  }
+  std::filesystem::path helper;
+  for (const std::filesystem::path& folder : libraryFolders())
+    if (std::filesystem::exists(helper = folder / "patina-udev")) break;
+  const QString program = QString::fromStdString(helper.string());
+  const QString pkexec = QStandardPaths::findExecutable(QStringLiteral("pkexec"));
+  if (!pkexec.isEmpty() && QProcess::startDetached(pkexec, {program}))
+    return setRows({{next, {}, Remedy::look_again}});
+  const QString command = QStringLiteral("sudo '%1'").arg(program);
+  QApplication::clipboard()->setText(command);
+  setRows({{tr("Only root can give the permission. The command is on the clipboard: run it in a "
+               "terminal, and plug the device in again"),
+            command, Remedy::look_again}});
+}
+
 DeviceChoice deviceChoice(const Scene& scene) {
   return {scene.device, scene.device_model, scene.stabilisers};
 }
 
 DevicePanel::DevicePanel(QWidget* parent)
     : QGroupBox(tr("Device"), parent), device_(new QComboBox(this)),
-      stabiliser_(new QComboBox(this)), layout_(new QVBoxLayout(this)), note_(new QLabel(this)),
+      stabiliser_(new QComboBox(this)), layout_(layoutIn<QVBoxLayout>(this)),
       attached_(new AttachedDevices(this)) {
-  layout_->setContentsMargins(0, 0, 0, 0);
-  layout_->setSpacing(6);
   auto* grid = new QGridLayout;
   grid->setColumnStretch(1, 1);
-  const auto caption = [&](const QString& words, int row) {
-    auto* label = new QLabel(words, this);
-    label->setProperty("quiet", true);
-    grid->addWidget(label, row, 0);
-  };
-  caption(tr("Felt with"), 0);
-  device_->setObjectName(QStringLiteral("device"));
+  grid->addWidget(quietLabel(tr("Felt with")), 0, 0);
   QStringList notes;
   for (const DeviceEntry& entry : deviceCatalog()) {
-    if (!entry.in_scenes) continue;
+    if (!entry.selectable) continue;
     device_->addItem(tr(entry.caption), QString::fromUtf8(entry.name));
     notes << tr(entry.caption) + QStringLiteral(": ") + tr(entry.note);
   }
-  device_->setToolTip(notes.join(QLatin1Char('\n')));
-  grid->addWidget(device_, 0, 1);
-  caption(tr("Stabiliser"), 1);
-  stabiliser_->setObjectName(QStringLiteral("stabiliser"));
+  grid->addWidget(named(device_, "device", notes.join(QLatin1Char('\n'))), 0, 1);
+  grid->addWidget(quietLabel(tr("Stabiliser")), 1, 0);
   stabiliser_->addItems(
       {tr("Automatic"), tr("None"), tr("Coupling"), tr("Passivity"), tr("Coupling and passivity")});
-  stabiliser_->setToolTip(
-      tr("Coupling: a spring and damper between tip and contact point, stable for any stiffness, "
-         "felt as a softer surface. Passivity: brakes when the surface has given more energy than "
-         "it took. Automatic: chosen from the device's numbers, nothing where none is needed."));
+  named(stabiliser_, "stabiliser",
+        tr("Coupling: a spring and damper between tip and contact point (virtual coupling). Stable "
+           "at any stiffness, but the surface feels softer. Passivity: adds damping when the "
+           "surface generates energy. Automatic: chosen from the device's parameters, and off if "
+           "not needed."));
   grid->addWidget(stabiliser_, 1, 1);
   layout_->addLayout(grid);
-  note_->setObjectName(QStringLiteral("stability_note"));
-  note_->setProperty("quiet", true);
-  note_->setWordWrap(true);
-  note_->hide();
-  layout_->addWidget(note_);
+  note_ = addNote(layout_, "stability_note");
   layout_->addWidget(attached_);
   connect(attached_, &AttachedDevices::pluginsFound, this,
           [this](const std::vector<PluginFound>& plugins) {
             for (const PluginFound& plugin : plugins)
               if (plugin.problem.empty())
-                addDevice(QString::fromStdString(plugin.caption), "plugin:" + plugin.name);
+                addDevice(shownText(plugin.caption), "plugin:" + plugin.name);
           });
-  connect(attached_, &AttachedDevices::useAsked, this, [this](const std::string& device) {
-    device_->setCurrentIndex(device_->findData(QString::fromStdString(device)));
+  connect(attached_, &AttachedDevices::useRequested, this, [this](const std::string& device) {
+    device_->setCurrentIndex(device_->findData(shownText(device)));
   });
   connect(device_, qOverload<int>(&QComboBox::currentIndexChanged), this, [this](int index) {
     choice_.device = device_->itemData(index).toString().toStdString();
@@ -139,46 +300,37 @@ DevicePanel::DevicePanel(QWidget* parent)
 void DevicePanel::setValues(const DeviceChoice& choice) {
   choice_ = choice;
   const QSignalBlocker quiet(device_), quiet_too(stabiliser_);
-  if (isPlugin(choice.device)) addDevice(QString::fromStdString(choice.device), choice.device);
-  device_->setCurrentIndex(device_->findData(QString::fromStdString(choice.device)));
+  if (isPlugin(choice.device)) addDevice(shownText(choice.device), choice.device);
+  device_->setCurrentIndex(device_->findData(shownText(choice.device)));
   for (int i = 0; i < 5; ++i)
     if (kStabilisers[i] == choice.stabilisers) stabiliser_->setCurrentIndex(i);
   rebuild();
 }
 
 void DevicePanel::addDevice(const QString& caption, const std::string& device) {
-  const QString name = QString::fromStdString(device);
+  const QString name = shownText(device);
   const QSignalBlocker quiet(device_);
   if (device_->findData(name) < 0) device_->addItem(caption, name);
 }
 
 void DevicePanel::showPlan(const StabiliserPlan& plan) {
-  const QString words = wordsFor(plan);
-  note_->setText(words);
-  note_->setVisible(!words.isEmpty());
+  say(note_, wordsFor(plan));
 }
 
 void DevicePanel::rebuild() {
   takeAway(std::exchange(numbers_, nullptr));
-  if (!choice_.model && !deviceNamed(choice_.device).takes_numbers) return;
+  if (!choice_.model && !deviceNamed(choice_.device).uses_device_model) return;
   numbers_ = new QWidget(this);
-  auto* column = new QVBoxLayout(numbers_);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(4);
+  auto* column = layoutIn<QVBoxLayout>(numbers_, 4);
   if (choice_.model) addNumbers(column);
-  auto* button = new QToolButton(numbers_);
-  button->setObjectName(QStringLiteral("device_numbers"));
-  button->setText(choice_.model ? tr("✕ Forget the numbers") : tr("+ Device numbers"));
-  button->setToolTip(tr("Mass, damping, encoder, rate and delay say how stiff a surface may be"));
-  connect(button, &QToolButton::clicked, this, [this] {
-    if (choice_.model)
-      choice_.model.reset();
-    else
-      choice_.model.emplace();
-    rebuild();
-    emit edited();
-  });
-  column->addWidget(button);
+  addButton<QToolButton>(
+      column, "device_numbers", choice_.model ? tr("✕ Forget the numbers") : tr("+ Device numbers"),
+      tr("Mass, damping, encoder, rate and delay determine the largest stable stiffness"), this,
+      [this] {
+        choice_.model = choice_.model ? std::nullopt : std::optional(DeviceModel{});
+        rebuild();
+        emit edited();
+      });
   layout_->insertWidget(1, numbers_);
 }
 
@@ -188,25 +340,20 @@ void DevicePanel::addNumbers(QVBoxLayout* column) {
   grid->setVerticalSpacing(2);
   int index = 0;
   for (const Number& number : numbers()) {
-    auto* label = new QLabel(number.caption, numbers_);
-    label->setProperty("quiet", true);
-    auto* box = new QDoubleSpinBox(numbers_);
-    box->setObjectName(QString::fromUtf8(number.name));
-    box->setAccessibleName(number.caption);
-    box->setToolTip(number.tip);
-    box->setDecimals(number.decimals);
-    box->setRange(number.low, number.high);
-    box->setSingleStep(number.step);
-    box->setSuffix(QStringLiteral(" ") + number.unit);
-    box->setKeyboardTracking(false);
-    box->setValue(number.get(*choice_.model) / number.per_unit);
+    auto* box = named(numberBox(number.caption, number.unit, number.range, numbers_), number.name,
+                      number.tip);
+    box->setValue((number.value ? (*choice_.model).*number.value : choice_.model->delay) /
+                  number.per_unit);
     connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
-            [this, set = number.set, per_unit = number.per_unit](double value) {
-              set(*choice_.model, per_unit * value);
+            [this, at = number.value, per_unit = number.per_unit](double value) {
+              if (at)
+                (*choice_.model).*at = per_unit * value;
+              else
+                choice_.model->delay = static_cast<int>(std::lround(value));
               emit edited();
             });
     const int row = 2 * (index / 2), side = index % 2;
-    grid->addWidget(label, row, side);
+    grid->addWidget(quietLabel(number.caption), row, side);
     grid->addWidget(box, row + 1, side);
     ++index;
   }

@@ -1,27 +1,35 @@
-// What the surface feels like. A value that the scene does not have has no row; the menu adds it.
+// The haptic properties of the surface: a row for each value of the scene, and a menu for others.
 #pragma once
 
 #include <QGroupBox>
-#include <QLabel>
 #include <QMenu>
 #include <QVBoxLayout>
 
-#include "app/gui/panels/form.h"
-#include "app/gui/window/mode_switch.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/form.h"
+#include "scene/haptic_properties.h"
 #include "scene/scene.h"
 
 namespace patina {
+
+// Chooses the contact surface: the surface, its offset, or a magnetic surface. They exclude each
+// other, because offset and magnet act in the same band (K12, K13).
+enum class TouchMode { contact, offset, magnetic };
 
 class HapticsPanel : public QGroupBox {
   Q_OBJECT
  public:
   explicit HapticsPanel(QWidget* parent = nullptr);
 
-  void setValues(const HapticProperties& haptics); // sends no signal
+  void setValues(const HapticProperties& haptics) { // Sends no signal.
+    haptics_ = haptics;
+    rebuild();
+  }
   const HapticProperties& values() const { return haptics_; }
-  // How far from the surface the open field can be felt [m].
+  // Largest distance from the surface that the field covers [m].
   void setReach(double reach);
-  void setProblem(const QString& line); // why the last edit does not count; empty = none
+  // Why the last edit is not applied; empty: none.
+  void setProblem(const QString& line) { say(problem_, line); }
 
  signals:
   void edited(const patina::HapticProperties& haptics);
@@ -34,11 +42,11 @@ class HapticsPanel : public QGroupBox {
   void addMenu();
   void setMode(TouchMode mode);
   void makeRemovable(ValueRow* row, const QString& tip, std::function<void()> remove);
-  void change(const std::function<void()>& rows); // which there are
-  double mostMillimetres() const;
+  void change(const std::function<void()>& rows); // Changes which rows exist.
+  double maxMillimetres() const;
 
   HapticProperties haptics_;
-  // What a mode had when it was left, for when it is chosen again.
+  // Last values of a mode, restored when it is chosen again.
   std::optional<double> last_offset_;
   std::optional<Magnet> last_magnet_;
   double reach_ = 5e-3;

@@ -1,33 +1,30 @@
 #include "app/gui/panels/history_panel.h"
 
-#include "app/gui/panels/history_words.h"
-#include "app/gui/window/theme.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/history_words.h"
+#include "app/gui/toolkit/theme.h"
 
 namespace patina {
 
 HistoryPanel::HistoryPanel(QWidget* parent) : QListWidget(parent) {
-  setObjectName(QStringLiteral("history"));
   setUniformItemSizes(true);
-  setToolTip(tr("Every edit, the oldest first; a click goes there"));
-  setFocusPolicy(Qt::NoFocus); // keys are the view's
-  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  setTextElideMode(Qt::ElideRight);
-  dress(*this, QStringLiteral("QListWidget { border: none; background: @card; }"
-                              "QListWidget::item { padding: 2px 6px; border: none; }"
-                              "QListWidget::item:selected { background: @chosen;"
-                              " color: @text; }"));
-  connect(this, &QListWidget::itemClicked, this,
-          [this](QListWidgetItem* item) { emit asked(static_cast<std::size_t>(row(item))); });
+  setFocusPolicy(Qt::NoFocus); // The view gets the keys.
+  dressPage(this, "history", tr("Every edit, the oldest first; a click goes there"));
+  connect(this, &QListWidget::itemClicked, this, [this](QListWidgetItem* item) {
+    emit positionRequested(static_cast<std::size_t>(row(item)));
+  });
 }
 
 void HistoryPanel::show(const EditStatus& status) {
-  // Painting appends: a history of thousands is not made anew for each stroke.
-  std::size_t kept = 0;
-  while (kept < edits_.size() && kept < status.edits.size() && edits_[kept] == status.edits[kept])
-    ++kept;
+  // Painting appends, so only the new end of the list is built.
+  std::size_t unchanged = 0;
+  while (unchanged < edits_.size() && unchanged < status.edits.size() &&
+         edits_[unchanged] == status.edits[unchanged])
+    ++unchanged;
   if (count() == 0) addItem(tr("As it was opened"));
-  while (count() > static_cast<int>(kept) + 1) delete takeItem(count() - 1);
-  for (std::size_t i = kept; i < status.edits.size(); ++i) addItem(wordsOfEdit(status.edits[i]));
+  while (count() > static_cast<int>(unchanged) + 1) delete takeItem(count() - 1);
+  for (std::size_t i = unchanged; i < status.edits.size(); ++i)
+    addItem(wordsOfEdit(status.edits[i]));
   edits_ = status.edits;
   done_ = status.done;
   mark();
@@ -46,7 +43,7 @@ void HistoryPanel::mark() {
     QFont font = this->font();
     font.setItalic(!done);
     item(i)->setFont(font);
-    item(i)->setForeground(done ? ink("text") : ink("faint"));
+    item(i)->setForeground(done ? themeColor("text") : themeColor("faint"));
     item(i)->setToolTip(done ? item(i)->text() : tr("%1 (undone)").arg(item(i)->text()));
   }
 }

@@ -1,4 +1,4 @@
-// Every edit, oldest first; a click goes there.
+// Lists the edits, oldest first; a click goes there.
 #pragma once
 
 #include <QListWidget>
@@ -14,13 +14,13 @@ class HistoryPanel : public QListWidget {
   void show(const EditStatus& status);
 
  signals:
-  void asked(std::size_t position); // so many edits are to be done
+  void positionRequested(std::size_t position); // Requests that this many edits are done.
 
  protected:
   void changeEvent(QEvent* event) override;
 
  private:
-  void mark(); // what is undone
+  void mark(); // Marks the undone edits.
 
   std::size_t done_ = 0;
   std::vector<std::string> edits_;

@@ -1,31 +1,44 @@
 #include "app/gui/panels/message_panel.h"
 
+#include <QDesktopServices>
 #include <QHBoxLayout>
 #include <QTime>
+#include <QUrl>
 
-#include "app/gui/window/theme.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/theme.h"
 
 namespace patina {
 namespace {
 constexpr int kShownFor = 8000; // [ms]
+constexpr int kFileRole = Qt::UserRole + 1;
+
+void openFile(const QString& file) {
+  if (!file.isEmpty()) QDesktopServices::openUrl(QUrl::fromLocalFile(file));
+}
 } // namespace
 
 MessagePanel::MessagePanel(QWidget* parent) : QListWidget(parent) {
-  setObjectName(QStringLiteral("messages"));
-  setFocusPolicy(Qt::NoFocus); // keys are the view's
+  setFocusPolicy(Qt::NoFocus); // The view gets the keys.
   setWordWrap(true);
-  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setSelectionMode(QAbstractItemView::NoSelection);
-  dress(*this, QStringLiteral("QListWidget { border: none; background: @card; }"
-                              "QListWidget::item { padding: 2px 6px; border: none; }"));
-  setToolTip(tr("What the window has said since it was opened"));
+  dressPage(this, "messages", tr("All messages since the start"));
+  connect(this, &QListWidget::itemClicked, this,
+          [](const QListWidgetItem* item) { openFile(item->data(kFileRole).toString()); });
 }
 
 void MessagePanel::add(const Message& message) {
   auto* item = new QListWidgetItem(
       QTime::currentTime().toString(QStringLiteral("hh:mm  ")) + message.words, this);
   item->setData(Qt::UserRole, message.warns);
-  if (message.warns) item->setForeground(ink("warn"));
+  if (!message.file.isEmpty()) {
+    item->setData(kFileRole, message.file);
+    item->setToolTip(tr("Opens %1").arg(message.file));
+    QFont font = item->font();
+    font.setUnderline(true);
+    item->setFont(font);
+  }
+  if (message.warns) item->setForeground(themeColor("warn"));
   scrollToBottom();
 }
 
@@ -33,37 +46,34 @@ void MessagePanel::changeEvent(QEvent* event) {
   QListWidget::changeEvent(event);
   if (event->type() != QEvent::PaletteChange) return;
   for (int i = 0; i < count(); ++i)
-    if (item(i)->data(Qt::UserRole).toBool()) item(i)->setForeground(ink("warn"));
+    if (item(i)->data(Qt::UserRole).toBool()) item(i)->setForeground(themeColor("warn"));
 }
 
 NoticeLine::NoticeLine(QWidget* parent) : QWidget(parent), words_(new ElidedLabel(this)) {
   auto* line = new QHBoxLayout(this);
   line->setContentsMargins(6, 0, 0, 0);
   line->setSpacing(2);
-  words_->setObjectName(QStringLiteral("notice"));
-  line->addWidget(words_, 1);
-  auto* away = new QToolButton(this);
-  away->setObjectName(QStringLiteral("dismiss"));
-  away->setText(QStringLiteral("✕"));
+  line->addWidget(named(words_, "notice"), 1);
+  open_ = addButton<QToolButton>(line, "open_saved", tr("Open"), tr("Opens the file"), this,
+                                 [this] { openFile(file_); });
+  auto* away = addButton<QToolButton>(line, "dismiss", QStringLiteral("✕"),
+                                      tr("Hides this line; the message stays under Messages"), this,
+                                      &QWidget::hide);
   away->setAutoRaise(true);
-  away->setToolTip(tr("Put this line away; it stays under Messages"));
-  line->addWidget(away);
-  connect(away, &QToolButton::clicked, this, &QWidget::hide);
-  patience_.setSingleShot(true);
-  patience_.setInterval(kShownFor);
-  connect(&patience_, &QTimer::timeout, this, &QWidget::hide);
+  delay_.setSingleShot(true);
+  delay_.setInterval(kShownFor);
+  connect(&delay_, &QTimer::timeout, this, &QWidget::hide);
   hide();
 }
 
 void NoticeLine::show(const Message& message) {
-  dress(*words_, message.warns ? QStringLiteral("color: @warn;") : QStringLiteral("color: @text;"));
+  applyStyleSheet(*words_, message.warns ? QStringLiteral("color: @warn;")
+                                         : QStringLiteral("color: @text;"));
   words_->setText(message.words);
-  message.warns ? patience_.stop() : patience_.start();
+  file_ = message.file;
+  open_->setVisible(!file_.isEmpty());
+  message.warns ? delay_.stop() : delay_.start();
   setVisible(true);
-}
-
-void NoticeLine::mousePressEvent(QMouseEvent*) {
-  emit opened();
 }
 
 } // namespace patina

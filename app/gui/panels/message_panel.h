@@ -1,17 +1,18 @@
-// What the window has said, the newest last: a list, and one line of it that can be put away.
+// The messages of the window, the newest last: a list, and a line with the newest one.
 #pragma once
 
 #include <QListWidget>
 #include <QTimer>
 #include <QToolButton>
 
-#include "app/gui/widgets/elided_label.h"
+#include "app/gui/toolkit/elided_label.h"
 
 namespace patina {
 
 struct Message {
   QString words;
-  bool warns = false; // stays until it is put away
+  bool warns = false; // Stays until it is dismissed.
+  QString file = {};  // A click opens it; empty: none.
 };
 
 class MessagePanel : public QListWidget {
@@ -31,14 +32,16 @@ class NoticeLine : public QWidget {
   void show(const Message& message);
 
  signals:
-  void opened(); // the person wants to read on
+  void opened(); // Requests the list of all messages.
 
  protected:
-  void mousePressEvent(QMouseEvent* event) override;
+  void mousePressEvent(QMouseEvent*) override { emit opened(); }
 
  private:
   ElidedLabel* words_;
-  QTimer patience_;
+  QToolButton* open_;
+  QString file_;
+  QTimer delay_;
 };
 
 } // namespace patina

@@ -1,4 +1,4 @@
-// The objects of the scene: which there are, where each is, and whether depth is to their union.
+// The objects of the scene, their poses, and whether distances are those of the union.
 #pragma once
 
 #include <array>
@@ -6,12 +6,10 @@
 
 #include <QCheckBox>
 #include <QDoubleSpinBox>
-#include <QGridLayout>
 #include <QGroupBox>
-#include <QLabel>
-#include <QListWidget>
 #include <QToolButton>
 
+#include "app/gui/toolkit/card.h"
 #include "scene/scene.h"
 
 namespace patina {
@@ -27,25 +25,26 @@ class ObjectList : public QGroupBox {
  public:
   explicit ObjectList(QWidget* parent = nullptr);
 
-  void setValues(const Scene& scene); // sends no signal; the chosen object stays chosen by name
+  void setValues(const Scene& scene); // Sends no signal; the selection is kept by name.
   const ObjectChoice& values() const { return choice_; }
-  void setProblem(const QString& line); // why the last edit does not count; empty = none
+  // Why the last edit is not applied; empty: none.
+  void setProblem(const QString& line) { say(problem_, line); }
 
  signals:
-  void edited(); // slow to compile: the window does it behind the picture
-  void addAsked();
+  void edited(); // Slow to compile: runs in the background.
+  void addRequested();
 
  private:
-  int chosen() const;
+  int chosen() const { return list_->currentRow(); }
   void showPose();
-  void readPose(std::size_t number); // the others keep digits that are not shown
+  void readPose(std::size_t number); // Other values keep digits that are not shown.
   void removeChosen();
   void addPoseRows(QGridLayout* grid);
 
   ObjectChoice choice_;
   QListWidget* list_;
   QWidget* pose_;
-  std::array<QDoubleSpinBox*, 6> numbers_{}; // x y z [mm], then angles [deg]
+  std::array<QDoubleSpinBox*, 6> numbers_{}; // x y z [mm], then angles [°].
   QToolButton* remove_;
   QCheckBox* redistance_;
   QLabel* problem_;

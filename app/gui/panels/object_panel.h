@@ -1,10 +1,10 @@
-// What is open: the mesh, its defects, the field and its bytes.
+// Facts about the open scene: the mesh, its defects, the field and its memory.
 #pragma once
 
-#include <QGridLayout>
 #include <QGroupBox>
 
-#include "session/build/session.h"
+#include "app/gui/toolkit/card.h"
+#include "session/open/session.h"
 
 namespace patina {
 
@@ -13,18 +13,14 @@ class ObjectPanel : public QGroupBox {
  public:
   explicit ObjectPanel(QWidget* parent = nullptr);
 
-  void showMesh(const TriangleMesh& mesh, const QString& name); // before the field is there
+  void showMesh(const TriangleMesh& mesh, const QString& name); // Shown before the field exists.
   void showScene(const CompiledScene& scene);
 
  private:
   void clear();
-  void row(const QString& caption, const QString& value, const QString& tip = {}, bool bad = false);
-  void heading(const QString& words);
   void meshRows(const TriangleMesh& mesh);
 
-  QGridLayout* grid_;
-  QWidget* body_ = nullptr;
-  int rows_ = 0;
+  FactTable* facts_ = nullptr;
 };
 
 } // namespace patina

@@ -4,26 +4,36 @@
 
 #include <QVBoxLayout>
 
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/words.h"
+
 namespace patina {
 namespace {
 
 using Lines = std::vector<std::pair<QString, QString>>;
 
-Lines linesOf(Handling handling) {
-  const auto tr = [](const char* words) { return ToolPanel::tr(words); };
+Lines linesOf(InteractionMode handling) {
   switch (handling) {
-  case Handling::feel:
+  case InteractionMode::feel:
     return {{tr("Left drag"), tr("moves the tip in the plane you look at")},
             {tr("Wheel"), tr("moves it away from you, and back")},
             {tr("Double click"), tr("sets it onto the surface")},
             {tr("Shift + left drag"), tr("turns the camera")}};
-  case Handling::press:
+  case InteractionMode::press:
     return {{tr("Left drag"), tr("presses on the surface under the pointer")},
             {tr("Wheel"), tr("sets the force")},
             {tr("Shift + left drag"), tr("turns the camera")},
             {tr("Ctrl + wheel"), tr("zooms")}};
-  case Handling::pick:
-    return {{tr("Click"), tr("takes what is painted there into the brush")}};
+  case InteractionMode::measure:
+    return {{tr("Click"), tr("sets a point; near a vertex the vertex")},
+            {tr("Left drag"), tr("turns the camera")},
+            {tr("Wheel"), tr("zooms")}};
+  case InteractionMode::pin:
+    return {{tr("Click"), tr("pins the values of what is in front")},
+            {tr("Left drag"), tr("turns the camera")},
+            {tr("Wheel"), tr("zooms")}};
+  case InteractionMode::pick:
+    return {{tr("Click"), tr("copies the paint at that point to the brush")}};
   default:
     return {{tr("Left drag"), tr("turns the camera")},
             {tr("Wheel"), tr("zooms")},
@@ -34,17 +44,11 @@ Lines linesOf(Handling handling) {
 } // namespace
 
 ToolPanel::ToolPanel(QWidget* parent)
-    : QGroupBox(parent), words_(new QLabel(this)),
+    : QGroupBox(parent),
       force_(new ValueRow(tr("Pressing force"), QStringLiteral("N"), {0.1, 3, 0.1, 1}, this)) {
-  words_->setObjectName(QStringLiteral("tool_words"));
-  words_->setProperty("quiet", true);
-  words_->setWordWrap(true);
-  auto* column = new QVBoxLayout(this);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->addWidget(words_);
-  column->addWidget(force_);
-  force_->setObjectName(QStringLiteral("press_force"));
-  force_->setToolTip(tr("How hard the tool is pressed onto the surface"));
+  auto* column = layoutIn<QVBoxLayout>(this);
+  words_ = addNote(column, "tool_words");
+  column->addWidget(named(force_, "press_force", tr("Pressing force of the tool")));
   connect(force_, &ValueRow::edited, this, &ToolPanel::forceEdited);
   setTool({});
 }
@@ -54,15 +58,11 @@ void ToolPanel::setTool(const ToolChoice& choice) {
   const auto card = std::find_if(cards.begin(), cards.end(),
                                  [&](const ToolCard& c) { return c.choice == choice; });
   if (card != cards.end()) setTitle(card->words);
-  force_->setVisible(choice.handling == Handling::press);
+  force_->setVisible(choice.handling == InteractionMode::press);
   QString words;
   for (const auto& [what, does] : linesOf(choice.handling))
     words += QStringLiteral("<p style='margin:2px 0'><b>%1</b> %2</p>").arg(what, does);
-  words_->setText(words);
-}
-
-void ToolPanel::setForce(double newtons) {
-  force_->setValue(newtons);
+  say(words_, words);
 }
 
 } // namespace patina

@@ -1,11 +1,11 @@
-// What the mouse does with a tool that does not paint.
+// Explains a tool that does not paint, with the force of the one that presses.
 #pragma once
 
 #include <QGroupBox>
 #include <QLabel>
 
-#include "app/gui/painting/tool_choice.h"
-#include "app/gui/panels/value_row.h"
+#include "app/gui/state/tool_choice.h"
+#include "app/gui/toolkit/value_row.h"
 
 namespace patina {
 
@@ -14,7 +14,9 @@ class ToolPanel : public QGroupBox {
  public:
   explicit ToolPanel(QWidget* parent = nullptr);
   void setTool(const ToolChoice& choice);
-  void setForce(double newtons); // of the tool that presses; sends no signal
+  void setForce(double newtons) { // Force of the pressing tool [N]; sends no signal.
+    force_->setValue(newtons);
+  }
 
  signals:
   void forceEdited(double newtons);

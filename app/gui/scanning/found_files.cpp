@@ -1,10 +1,12 @@
 #include "app/gui/scanning/found_files.h"
 
+#include "core/file.h"
+
 namespace patina {
 namespace {
 
-std::vector<NoPose> withoutPose(const OpenScan& scan) {
-  std::vector<NoPose> without;
+std::vector<MissingPose> withoutPose(const OpenScan& scan) {
+  std::vector<MissingPose> without;
   for (std::size_t i = 0; i < scan.seen().size(); ++i)
     if (!scan.seen()[i].why.empty())
       without.push_back({scan.files()->frames[i].t, scan.seen()[i].why});
@@ -31,18 +33,25 @@ std::vector<SceneScan> foundSteps(const OpenScan& scan) {
   return steps;
 }
 
-bool canKeep(const OpenScan& scan) {
+bool canSaveResults(const OpenScan& scan) {
   const ScanFiles* files = scan.files();
   const ScanPath* found = scan.path();
   return found != nullptr && !scan.grows() && !files->of_scene && !found->poses.empty() &&
          !found->path.empty() && !scan.busy() && (files->poses.empty() || files->path.empty());
 }
 
-void keepFound(const OpenScan& scan) {
+void saveResults(const OpenScan& scan) {
   const ScanFiles& files = *scan.files();
   if (files.poses.empty())
     writePoses(files.folder / "poses.tum", scan.path()->poses, withoutPose(scan));
   if (files.path.empty()) writePath(files.folder / "path.csv", scan.path()->path);
+}
+
+bool writeKeepingOld(const std::filesystem::path& path, const std::string& text) {
+  const bool was_there = std::filesystem::exists(path);
+  if (was_there) std::filesystem::rename(path, path.string() + "~");
+  writeFileAtomically(path, text);
+  return was_there;
 }
 
 } // namespace patina

@@ -1,34 +1,35 @@
 #include "app/gui/scanning/frame_strip.h"
 
-#include <QHelpEvent>
-#include <QMouseEvent>
+#include <algorithm>
+
 #include <QPainter>
 #include <QScrollBar>
-#include <QToolTip>
-#include <QWheelEvent>
+#include <QSignalBlocker>
+#include <QStyledItemDelegate>
 
 #include "app/gui/scanning/frame_view.h"
-#include "app/gui/window/theme.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/theme.h"
 
 namespace patina {
 namespace {
 
 constexpr int kThumbWide = 72, kThumbHigh = 54, kCell = 78, kBadgeLine = 17, kEdge = 3;
+constexpr int kCellHigh = kThumbHigh + kBadgeLine + 2 * kEdge;
 
-} // namespace
-
+// Differs in form as well as in colour.
 void drawBadge(QPainter& painter, const QPointF& middle, FrameQuality quality) {
   painter.save();
   painter.translate(middle);
   painter.setRenderHint(QPainter::Antialiasing);
   const auto pen = [&](const char* name) {
-    painter.setPen(QPen(ink(name), 1.8, Qt::SolidLine, Qt::RoundCap));
+    painter.setPen(QPen(themeColor(name), 1.8, Qt::SolidLine, Qt::RoundCap));
     painter.setBrush(Qt::NoBrush);
   };
   switch (quality) {
   case FrameQuality::good:
     painter.setPen(Qt::NoPen);
-    painter.setBrush(ink("series_y"));
+    painter.setBrush(themeColor("series_y"));
     painter.drawEllipse(QPointF(0, 0), 4, 4);
     break;
   case FrameQuality::few:
@@ -56,27 +57,59 @@ void drawBadge(QPainter& painter, const QPointF& middle, FrameQuality quality) {
     break;
   case FrameQuality::unknown:
     painter.setPen(Qt::NoPen);
-    painter.setBrush(ink("grip"));
+    painter.setBrush(themeColor("grip"));
     painter.drawEllipse(QPointF(0, 0), 1.8, 1.8);
     break;
   }
   painter.restore();
 }
 
-QString wordOf(FrameQuality quality) {
-  const char* words[] = {"good",      "one marker only", "ambiguous",        "rejected",
-                         "no marker", "unreadable",      "not looked at yet"};
-  return FrameStrip::tr(words[static_cast<std::size_t>(quality)]);
-}
+class FrameItem : public QListWidgetItem {
+ public:
+  FrameItem(const OpenScan& scan, std::size_t frame, QListWidget* list)
+      : QListWidgetItem(list), scan_(scan), frame_(frame) {}
+  QVariant data(int role) const override {
+    constexpr const char* kWords[] = {
+        "good",      "one marker only", "ambiguous",        "rejected",
+        "no marker", "unreadable",      "not looked at yet"};
+    if (role == Qt::SizeHintRole) return QSize(kCell, kCellHigh);
+    if (role != Qt::ToolTipRole && role != Qt::AccessibleTextRole) return {};
+    return FrameStrip::tr("Frame %1: %2")
+        .arg(frame_)
+        .arg(FrameStrip::tr(kWords[static_cast<std::size_t>(scan_.qualityOf(frame_))]));
+  }
+
+ private:
+  const OpenScan& scan_;
+  std::size_t frame_;
+};
+
+class FrameDelegate : public QStyledItemDelegate {
+ public:
+  explicit FrameDelegate(FrameStrip& strip) : QStyledItemDelegate(&strip), strip_(strip) {}
+  void paint(QPainter* painter, const QStyleOptionViewItem& option,
+             const QModelIndex& index) const override {
+    strip_.paintFrame(*painter, option.rect, static_cast<std::size_t>(index.row()));
+  }
+
+ private:
+  const FrameStrip& strip_;
+};
+
+} // namespace
 
 FrameStrip::FrameStrip(OpenScan& scan, QWidget* parent)
-    : QAbstractScrollArea(parent), scan_(scan), job_(this) {
-  setObjectName(QStringLiteral("strip"));
+    : QListWidget(parent), scan_(scan), job_(this) {
+  named(this, "strip",
+        tr("Frames and their tracking quality. Click a frame or use the arrow keys to select it."));
   setFrameShape(QFrame::NoFrame);
-  setFocusPolicy(Qt::StrongFocus);
+  setFlow(QListView::LeftToRight);
+  setUniformItemSizes(true);
+  setHorizontalScrollMode(QAbstractItemView::ScrollPerPixel);
   setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOn);
-  setToolTip(tr("The frames, and what each is worth; a click goes there, as the arrow keys do"));
+  setAutoScroll(false); // showCursor() scrolls.
+  setItemDelegate(new FrameDelegate(*this));
   setFixedHeight(minimumSizeHint().height());
   connect(&scan_, &OpenScan::opened, this, &FrameStrip::takeScan);
   connect(&scan_.cursor(), &ScanCursor::moved, this, &FrameStrip::showCursor);
@@ -84,77 +117,58 @@ FrameStrip::FrameStrip(OpenScan& scan, QWidget* parent)
   connect(&scan_, &OpenScan::framesSeen, this, redraw);
   connect(&scan_, &OpenScan::pathMade, this, redraw);
   connect(horizontalScrollBar(), &QScrollBar::valueChanged, this, &FrameStrip::load);
+  connect(this, &QListWidget::currentRowChanged, this, [this](int row) {
+    if (row >= 0) scan_.cursor().set(scan_.files()->frames[static_cast<std::size_t>(row)].t);
+  });
   takeScan();
 }
 
 QSize FrameStrip::minimumSizeHint() const {
-  return {2 * kCell,
-          kThumbHigh + kBadgeLine + 2 * kEdge + horizontalScrollBar()->sizeHint().height()};
+  return {2 * kCell, kCellHigh + horizontalScrollBar()->sizeHint().height()};
 }
 
-std::size_t FrameStrip::count() const {
-  return scan_.files() != nullptr ? scan_.files()->frames.size() : 0;
-}
-
-QRect FrameStrip::placeOf(std::size_t frame) const {
-  return {static_cast<int>(frame) * kCell - horizontalScrollBar()->value(), 0, kCell,
-          viewport()->height()};
-}
-
-std::optional<std::size_t> FrameStrip::frameAt(const QPoint& place) const {
-  const int frame = (place.x() + horizontalScrollBar()->value()) / kCell;
-  if (frame < 0 || frame >= static_cast<int>(count())) return std::nullopt;
-  return static_cast<std::size_t>(frame);
-}
-
-std::pair<std::size_t, std::size_t> FrameStrip::seen() const {
-  const int from = horizontalScrollBar()->value();
-  const auto first = static_cast<std::size_t>(from / kCell);
-  const auto behind = static_cast<std::size_t>((from + viewport()->width()) / kCell + 1);
-  return {std::min(first, count()), std::min(behind, count())};
-}
-
-void FrameStrip::takeScan() {
-  job_.silence();
-  thumbs_.clear();
-  setVisible(count() > 0);
-  arrange();
-  horizontalScrollBar()->setValue(0);
+void FrameStrip::resizeEvent(QResizeEvent* event) {
+  QListWidget::resizeEvent(event);
   load();
 }
 
-void FrameStrip::arrange() {
-  const int all = static_cast<int>(count()) * kCell;
-  horizontalScrollBar()->setRange(0, std::max(0, all - viewport()->width()));
-  horizontalScrollBar()->setPageStep(viewport()->width());
-  horizontalScrollBar()->setSingleStep(kCell);
-}
-
-void FrameStrip::resizeEvent(QResizeEvent*) {
-  arrange();
+void FrameStrip::takeScan() {
+  job_.discardResult();
+  thumbs_.clear();
+  const QSignalBlocker quiet(this);
+  clear();
+  const std::size_t frames = scan_.files() != nullptr ? scan_.files()->frames.size() : 0;
+  for (std::size_t i = 0; i < frames; ++i) new FrameItem(scan_, i, this);
+  setVisible(frames > 0);
+  horizontalScrollBar()->setValue(0);
+  showCursor();
   load();
 }
 
 void FrameStrip::showCursor() {
   if (count() == 0) return;
-  const QRect place = placeOf(scan_.cursor().frame());
-  if (!viewport()->rect().contains(place))
-    horizontalScrollBar()->setValue(horizontalScrollBar()->value() + place.center().x() -
-                                    viewport()->width() / 2);
+  const QSignalBlocker quiet(this);
+  const std::size_t now = scan_.cursor().frame();
+  setCurrentRow(static_cast<int>(now));
+  if (!viewport()->rect().contains(placeOf(now)))
+    scrollToItem(currentItem(), QAbstractItemView::PositionAtCenter);
   viewport()->update();
 }
 
 void FrameStrip::load() {
   viewport()->update();
-  const auto [first, behind] = seen();
-  std::erase_if(thumbs_, [&, from = first, to = behind](const auto& thumb) {
-    return thumb.first + (to - from) < from || thumb.first > to + (to - from);
+  const int from = horizontalScrollBar()->value(), wide = viewport()->width();
+  const auto frames = static_cast<std::size_t>(count());
+  const auto first = std::min(frames, static_cast<std::size_t>(from / kCell));
+  const auto behind = std::min(frames, static_cast<std::size_t>((from + wide) / kCell + 1));
+  std::erase_if(thumbs_, [&, n = behind - first](const auto& thumb) {
+    return thumb.first + n < first || thumb.first > behind + n;
   });
   std::vector<std::pair<std::size_t, std::filesystem::path>> wanted;
   for (std::size_t i = first; i < behind; ++i)
     if (!thumbs_.contains(i)) wanted.emplace_back(i, scan_.files()->frames[i].file);
   if (wanted.empty()) return;
-  job_.start([this, wanted](Progress& progress, const Background::Deliver& deliver) {
+  job_.start([this, wanted](Progress& progress, const Background::Post& post) {
     for (const auto& [frame, path] : wanted) {
       if (progress.cancelled()) break;
       QImage thumb;
@@ -162,66 +176,39 @@ void FrameStrip::load() {
         thumb = imageOf(readGrey(path))
                     .scaled(2 * kThumbWide, 2 * kThumbHigh, Qt::KeepAspectRatio,
                             Qt::SmoothTransformation);
-      } catch (const std::exception&) { // it stands as one that cannot be read
+      } catch (const std::exception&) { // Shown as unreadable.
       }
-      deliver(false, [this, frame = frame, thumb] {
+      post(false, [this, frame = frame, thumb] {
         thumbs_[frame] = thumb;
         viewport()->update();
       });
     }
-    deliver(true, [] {});
+    post(true, [] {});
   });
 }
 
-void FrameStrip::paintEvent(QPaintEvent*) {
-  QPainter painter(viewport());
-  painter.fillRect(viewport()->rect(), ink("card"));
+void FrameStrip::paintFrame(QPainter& painter, const QRect& cell, std::size_t frame) const {
   painter.setRenderHint(QPainter::SmoothPixmapTransform);
-  if (count() == 0) return;
-  const std::size_t now = scan_.cursor().frame();
-  const auto [first, behind] = seen();
-  for (std::size_t i = first; i < behind; ++i) {
-    const QRect cell = placeOf(i);
-    const QRect room(cell.left() + kEdge, kEdge, kThumbWide, kThumbHigh);
-    if (i == now) painter.fillRect(cell, ink("chosen"));
-    painter.fillRect(room, ink("soft"));
-    const auto thumb = thumbs_.find(i);
-    if (thumb != thumbs_.end() && !thumb->second.isNull()) {
-      const QSize size = thumb->second.size().scaled(room.size(), Qt::KeepAspectRatio);
-      painter.drawImage(QRect(room.center() - QPoint(size.width() / 2, size.height() / 2), size),
-                        thumb->second);
-    }
-    if (i == now) {
-      painter.setPen(QPen(ink("accent"), 2));
-      painter.drawRect(room);
-    }
-    const int line = kEdge + kThumbHigh + kBadgeLine / 2 + 1;
-    drawBadge(painter, QPointF(cell.left() + 10, line), scan_.qualityOf(i));
-    painter.setPen(ink("text"));
-    painter.drawText(QRect(cell.left() + 18, line - kBadgeLine / 2, kCell - 22, kBadgeLine),
-                     Qt::AlignRight | Qt::AlignVCenter,
-                     QStringLiteral("%1 s").arg(scan_.files()->frames[i].t, 0, 'f', 2));
+  const bool chosen = static_cast<int>(frame) == currentRow();
+  const QRect room(cell.left() + kEdge, kEdge, kThumbWide, kThumbHigh);
+  if (chosen) painter.fillRect(cell, themeColor("chosen"));
+  painter.fillRect(room, themeColor("soft"));
+  const auto thumb = thumbs_.find(frame);
+  if (thumb != thumbs_.end() && !thumb->second.isNull()) {
+    const QSize size = thumb->second.size().scaled(room.size(), Qt::KeepAspectRatio);
+    painter.drawImage(QRect(room.center() - QPoint(size.width() / 2, size.height() / 2), size),
+                      thumb->second);
   }
-}
-
-void FrameStrip::mousePressEvent(QMouseEvent* event) {
-  if (const auto frame = frameAt(event->pos())) scan_.cursor().set(scan_.files()->frames[*frame].t);
-}
-
-void FrameStrip::wheelEvent(QWheelEvent* event) {
-  const int notch =
-      event->angleDelta().y() != 0 ? event->angleDelta().y() : event->angleDelta().x();
-  horizontalScrollBar()->setValue(horizontalScrollBar()->value() - notch * kCell / 60);
-}
-
-bool FrameStrip::viewportEvent(QEvent* event) {
-  if (event->type() != QEvent::ToolTip) return QAbstractScrollArea::viewportEvent(event);
-  const auto* help = static_cast<QHelpEvent*>(event);
-  const auto frame = frameAt(help->pos());
-  QToolTip::showText(help->globalPos(),
-                     frame ? tr("Frame %1: %2").arg(*frame).arg(wordOf(scan_.qualityOf(*frame)))
-                           : toolTip());
-  return true;
+  if (chosen) {
+    painter.setPen(QPen(themeColor("accent"), 2));
+    painter.drawRect(room);
+  }
+  const int line = kEdge + kThumbHigh + kBadgeLine / 2 + 1;
+  drawBadge(painter, QPointF(cell.left() + 10, line), scan_.qualityOf(frame));
+  painter.setPen(themeColor("text"));
+  painter.drawText(QRect(cell.left() + 18, line - kBadgeLine / 2, kCell - 22, kBadgeLine),
+                   Qt::AlignRight | Qt::AlignVCenter,
+                   QStringLiteral("%1 s").arg(scan_.files()->frames[frame].t, 0, 'f', 2));
 }
 
 } // namespace patina

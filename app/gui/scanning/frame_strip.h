@@ -1,47 +1,37 @@
-// The frames of a scan side by side, each with what it is worth. It holds those that are seen.
+// The frames of a scan in a row, with their tracking quality. Loads only visible thumbnails.
 #pragma once
 
 #include <map>
 
-#include <QAbstractScrollArea>
 #include <QImage>
+#include <QListWidget>
 
 #include "app/gui/scanning/open_scan.h"
 
 namespace patina {
 
-// Told apart by form as well as colour.
-void drawBadge(QPainter& painter, const QPointF& middle, FrameQuality quality);
-QString wordOf(FrameQuality quality);
-
-class FrameStrip : public QAbstractScrollArea {
+class FrameStrip : public QListWidget {
   Q_OBJECT
  public:
   explicit FrameStrip(OpenScan& scan, QWidget* parent = nullptr);
-  QRect placeOf(std::size_t frame) const; // in the viewport, if it were seen
+  // Position in the viewport, even if scrolled out.
+  QRect placeOf(std::size_t frame) const { return visualItemRect(item(static_cast<int>(frame))); }
   std::size_t held() const { return thumbs_.size(); }
+  void paintFrame(QPainter& painter, const QRect& cell, std::size_t frame) const;
   QSize minimumSizeHint() const override;
   QSize sizeHint() const override { return minimumSizeHint(); }
 
  protected:
-  void paintEvent(QPaintEvent* event) override;
-  void mousePressEvent(QMouseEvent* event) override;
-  void wheelEvent(QWheelEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;
-  bool viewportEvent(QEvent* event) override; // tooltips
 
  private:
-  std::size_t count() const;
-  std::optional<std::size_t> frameAt(const QPoint& place) const;
-  std::pair<std::size_t, std::size_t> seen() const; // first and behind the last
   void takeScan();
   void showCursor();
-  void arrange();
-  void load(); // thumbnails that are missing, and lets go of those that are far
+  void load(); // Loads missing thumbnails and frees distant ones.
 
   OpenScan& scan_;
   Background job_;
-  std::map<std::size_t, QImage> thumbs_; // null: it cannot be read
+  std::map<std::size_t, QImage> thumbs_; // Null image: unreadable.
 };
 
 } // namespace patina

@@ -1,15 +1,18 @@
 #include "app/gui/scanning/open_scan.h"
 
+#include "app/gui/toolkit/words.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/tracking/track_frames.h"
 #include "core/error.h"
 
 namespace patina {
 namespace {
 
-constexpr std::size_t kBatch = 16; // frames that are told of at once
+constexpr double kSameMoment = 1e-4; // [s]
+
+constexpr std::size_t kBatch = 16;
 
 using Seen = std::vector<SeenFrame>;
 
@@ -17,16 +20,15 @@ SeenFrame seenFrame(const SeenRig& rig, const std::string& why) {
   SeenFrame frame;
   frame.looked = true;
   frame.verdict = rig.verdict;
-  // A verdict speaks of a picture; without one the cause is the file's.
+  // A verdict refers to a readable picture; otherwise the cause is the file.
   frame.readable = why.empty() || why == reasonOf(rig);
   frame.markers = rig.markers;
-  frame.dropped = rig.dropped;
   frame.rms = rig.rms;
   frame.why = why;
   return frame;
 }
 
-// What a pose says of the tip, before anything is filtered.
+// Returns the tip of an unfiltered pose.
 PathSample sampleOf(const CameraPose& pose, const Vec3& tip) {
   PathSample sample;
   sample.t = pose.t;
@@ -40,12 +42,63 @@ PathSample sampleOf(const CameraPose& pose, const Vec3& tip) {
 
 } // namespace
 
-OpenScan::OpenScan(QObject* parent) : QObject(parent), job_(this), cursor_(*this) {
-  connect(&job_, &Background::progressed, this, &OpenScan::progressed);
+void ScanCursor::set(double time) {
+  const Gap all = scan_.span();
+  time = std::clamp(time, all.from, all.to);
+  if (time == time_) return;
+  time_ = time;
+  emit moved();
 }
 
-void OpenScan::open(const std::filesystem::path& folder) {
-  start([folder](Progress& progress) { return readScanFolder(folder, progress); });
+void ScanCursor::rewind() {
+  time_ = scan_.span().from;
+}
+
+void ScanCursor::step(int frames) {
+  if (scan_.files() == nullptr) return;
+  const std::vector<Frame>& all = scan_.files()->frames;
+  if (all.empty()) return set(time_ + frames / 30.);
+  const int last = static_cast<int>(all.size()) - 1;
+  set(all[static_cast<std::size_t>(std::clamp(static_cast<int>(frame()) + frames, 0, last))].t);
+}
+
+std::size_t ScanCursor::frame() const {
+  const std::vector<Frame>& frames = scan_.files()->frames;
+  const auto after =
+      std::lower_bound(frames.begin(), frames.end(), time_,
+                       [](const Frame& frame, double when) { return frame.t < when; });
+  if (after == frames.begin()) return 0;
+  const auto i = static_cast<std::size_t>(after - frames.begin());
+  return after == frames.end() || time_ - frames[i - 1].t <= after->t - time_ ? i - 1 : i;
+}
+
+const Finding* ScanCursor::finding() const {
+  const Finding* found = nullptr;
+  if (scan_.path() != nullptr)
+    for (const Finding& each : scan_.path()->findings)
+      if (time_ >= each.from - kSameMoment && time_ <= each.to + kSameMoment &&
+          (found == nullptr || each.to - each.from < found->to - found->from))
+        found = &each;
+  return found;
+}
+
+std::optional<Pose> ScanCursor::probe() const {
+  const ScanPath* path = scan_.path();
+  if (path == nullptr) return std::nullopt;
+  const CameraTrack& track = path->filtered.track;
+  if (track.empty()) {
+    const auto pose = poseAt(path->poses, time_);
+    return pose ? std::optional(poseOf(path->poses[*pose])) : std::nullopt;
+  }
+  const TipMotion motion = motionAt(track, time_);
+  Pose pose = Pose::Identity();
+  pose.linear() = motion.orientation.toRotationMatrix();
+  pose.translation() = motion.position - motion.orientation * scan_.files()->tip();
+  return pose;
+}
+
+OpenScan::OpenScan(QObject* parent) : QObject(parent), job_(this), cursor_(*this) {
+  connect(&job_, &Background::progressed, this, &OpenScan::progressed);
 }
 
 void OpenScan::open(const SceneScan& scan) {
@@ -66,14 +119,14 @@ void OpenScan::openPictures(const std::filesystem::path& folder) {
 }
 
 void OpenScan::start(Read read) {
-  job_.start([this, read](Progress& progress, const Background::Deliver& deliver) {
+  job_.start([this, read](Progress& progress, const Background::Post& post) {
     try {
-      run(read, progress, deliver);
-      deliver(true, [this] { emit finished(); });
+      run(read, progress, post);
+      post(true, [this] { emit finished(); });
     } catch (const Cancelled&) {
-      deliver(true, [this] { emit finished(); });
+      post(true, [this] { emit finished(); });
     } catch (const std::exception& error) {
-      deliver(true, [this, words = QString::fromStdString(error.what())] {
+      post(true, [this, words = shownText(error.what())] {
         emit finished();
         emit failed(words);
       });
@@ -81,13 +134,13 @@ void OpenScan::start(Read read) {
   });
 }
 
-void OpenScan::run(const Read& read, Progress& progress, const Background::Deliver& deliver) {
+void OpenScan::run(const Read& read, Progress& progress, const Background::Post& post) {
   const auto files = std::make_shared<const ScanFiles>(read(progress));
-  deliver(false, [this, files] { take(files); });
+  post(false, [this, files] { take(files); });
   const auto filter = [&](const std::vector<CameraPose>& poses, const Seen& seen) {
     Progress part(progress, [&](double, std::string_view) { progress.report(0.99, "filter"); });
     const auto path = std::make_shared<ScanPath>(pathOf(*files, poses, seen, part));
-    deliver(false, [this, path] {
+    post(false, [this, path] {
       path_ = path;
       emit pathMade();
     });
@@ -95,27 +148,28 @@ void OpenScan::run(const Read& read, Progress& progress, const Background::Deliv
   if (!files->poses.empty() || !files->path.empty()) filter(files->poses, {});
   if (!files->canTrack()) return;
   Seen all(files->frames.size());
-  std::size_t told = 0;
-  const auto tell = [&](std::size_t end) {
-    deliver(false, [this, told,
-                    part = Seen(all.begin() + static_cast<std::ptrdiff_t>(told),
-                                all.begin() + static_cast<std::ptrdiff_t>(end))] {
-      std::copy(part.begin(), part.end(), seen_.begin() + static_cast<std::ptrdiff_t>(told));
+  std::size_t reported = 0;
+  const auto report = [&](std::size_t end) {
+    post(false, [this, reported,
+                 part = Seen(all.begin() + static_cast<std::ptrdiff_t>(reported),
+                             all.begin() + static_cast<std::ptrdiff_t>(end))] {
+      std::copy(part.begin(), part.end(), seen_.begin() + static_cast<std::ptrdiff_t>(reported));
       emit framesSeen();
     });
-    told = end;
+    reported = end;
   };
-  const std::unique_ptr<FrameSource> source = openFrames(files->folder.string(), 0);
   const TrackedFrames found =
-      trackFrames(*source, *files->camera, files->markers, {}, progress,
-                  [&](std::size_t i, const SeenRig& rig, const std::string& why) {
-                    if (i >= all.size()) return; // come since, to a scan that is being recorded
-                    all[i] = seenFrame(rig, why);
-                    if (i + 1 - told == kBatch) tell(i + 1);
-                  });
-  tell(all.size());
-  deliver(false, [this, notes = found.notes] {
-    for (const std::string& line : notes) emit noted(QString::fromStdString(line));
+      trackScan({files->folder.string(), *files->camera, files->markers, "rig.json"}, progress,
+                [&](std::size_t i, const SeenRig& rig, const std::string& why) {
+                  if (i >= all.size()) return; // come since, to a scan that is being recorded
+                  all[i] = seenFrame(rig, why);
+                  if (i + 1 - reported == kBatch) report(i + 1);
+                });
+  report(all.size());
+  std::vector<std::string> notes = found.notes;
+  if (!found.rig_doubt.empty()) notes.push_back("rig.json: " + found.rig_doubt);
+  post(false, [this, notes = std::move(notes)] {
+    for (const std::string& line : notes) emit noted(shownText(line));
   });
   filter(files->poses.empty() ? found.poses : files->poses, all);
 }
@@ -160,21 +214,11 @@ void OpenScan::close() {
   emit opened();
 }
 
-void OpenScan::cancel() {
-  job_.silence();
-  emit finished();
-}
-
 QString OpenScan::name() const {
   if (!files_) return {};
-  if (files_->of_scene) return QString::fromStdString(files_->scan.name);
+  if (files_->of_scene) return shownText(files_->scan.name);
   const std::filesystem::path folder = files_->folder.lexically_normal();
-  return QString::fromStdString(
-      (folder.has_filename() ? folder : folder.parent_path()).filename().string());
-}
-
-FrameQuality OpenScan::qualityOf(std::size_t frame) const {
-  return patina::qualityOf(*files_, seen_, path_.get(), frame);
+  return shownText((folder.has_filename() ? folder : folder.parent_path()).filename().string());
 }
 
 Gap OpenScan::span() const {

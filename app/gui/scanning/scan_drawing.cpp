@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include <QCoreApplication>
+#include "app/gui/toolkit/words.h"
 
 namespace patina {
 namespace {
 
-constexpr double kLongestPause = 0.05; // between samples of one stroke [s]
+constexpr double kMaxPause = 0.05; // Longest time between samples of one stroke [s].
 
 double valueOf(const PathSample& sample, PathColor color) {
   switch (color) {
@@ -25,7 +25,7 @@ double valueOf(const PathSample& sample, PathColor color) {
 
 QString captionOf(PathColor color) {
   constexpr const char* kCaptions[] = {"force [N]", "sigma [mm]", "time [s]"};
-  return QCoreApplication::translate("Scan", kCaptions[static_cast<std::size_t>(color)]);
+  return tr(kCaptions[static_cast<std::size_t>(color)]);
 }
 
 Pose pictureFromCamera(const ScanFiles& files) {
@@ -45,9 +45,8 @@ DrawnPath drawnPath(const ScanFiles& files, const ScanPath& path, PathColor colo
   const std::vector<Gap>& gaps = path.filtered.without_pose;
   auto gap = gaps.begin();
   double last = -INFINITY;
-  // Poses alone stand as far apart as the camera's frames.
-  const double pause =
-      files.probe.empty() ? path.filtered.track.options.longest_gap : kLongestPause;
+  // Samples without a probe are as far apart as the frames.
+  const double pause = files.probe.empty() ? path.filtered.track.options.longest_gap : kMaxPause;
   for (const PathSample& sample : path.path) {
     while (gap != gaps.end() && gap->to < sample.t) ++gap;
     const bool in_gap = gap != gaps.end() && sample.t > gap->from && sample.t < gap->to;

@@ -1,4 +1,4 @@
-// A scan as its picture draws it.
+// Converts a scan to what its 3D picture draws.
 #pragma once
 
 #include "app/gui/scanning/scan_path.h"
@@ -9,12 +9,12 @@ namespace patina {
 enum class PathColor { force, sigma, time };
 QString captionOf(PathColor color);
 
-// In the mesh's frame where the scan says how the camera saw it, else in the camera's.
+// Returns the pose in the mesh's frame if the scan contains it, otherwise the identity.
 Pose pictureFromCamera(const ScanFiles& files);
-Vec3 upOf(const ScanFiles& files); // in that frame
+Vec3 upOf(const ScanFiles& files); // Up direction in that frame.
 
 DrawnPath drawnPath(const ScanFiles& files, const ScanPath& path, PathColor color);
-// Where poses that were left out have the tip.
+// Tip positions of rejected poses.
 std::vector<DrawnMark> drawnMarks(const ScanFiles& files, const ScanPath& path);
 DrawnCamera drawnCamera(const ScanFiles& files);
 

@@ -3,26 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include <QCoreApplication>
-
-#include "app/gui/widgets/words.h"
+#include "app/gui/toolkit/words.h"
 #include "core/numbers.h"
-#include "scan/filter_scan.h"
 
 namespace patina {
 namespace {
 
 constexpr double kSameTime = 1e-6; // [s]
 
-QString say(const char* words) {
-  return QCoreApplication::translate("Scan", words);
-}
-
 QString secondsWords(double t) {
   return QString::number(t, 'f', 3);
 }
 
-// How far a pose that was left out is from where the path has the probe at its time.
+// Reports the distance of a rejected pose from the path at its time.
 QString wordsOfOutlier(const CameraPose& pose, const CameraTrack& track, const Vec3& tip) {
   const TipMotion motion = motionAt(track, pose.t);
   const double away = (pose.position + pose.orientation * tip - motion.position).norm();
@@ -31,8 +24,7 @@ QString wordsOfOutlier(const CameraPose& pose, const CameraTrack& track, const V
   const double sigma = std::sqrt(pose.sigma_position * pose.sigma_position +
                                  2. / 3 * lever * lever + motion.sigma * motion.sigma);
   const double sigma_angle = std::hypot(pose.sigma_angle, motion.sigma_angle);
-  return say("pose at %1 s left out: %2 and %3° from where the path lets expect it, %4 and %5 "
-             "sigma")
+  return tr("pose at %1 s rejected: %2 and %3° from the filtered path, %4 and %5 sigma")
       .arg(secondsWords(pose.t), inWords(away))
       .arg(turned * 180 / M_PI, 0, 'f', 1)
       .arg(away / sigma, 0, 'f', 0)
@@ -40,8 +32,8 @@ QString wordsOfOutlier(const CameraPose& pose, const CameraTrack& track, const V
 }
 
 QString wordsOfVerdict(PoseVerdict verdict, double t) {
-  return say("pose at %1 s left out: %2")
-      .arg(secondsWords(t), QString::fromStdString(std::string(nameOf(verdict))));
+  return tr("pose at %1 s rejected: %2")
+      .arg(secondsWords(t), shownText(std::string(nameOf(verdict))));
 }
 
 Finding::Kind kindOf(const SeenFrame& seen) {
@@ -51,13 +43,13 @@ Finding::Kind kindOf(const SeenFrame& seen) {
                                                : Finding::Kind::no_marker;
 }
 
-// Frames one after another without a pose for the same cause are one.
+// Consecutive frames without a pose for the same reason become one finding.
 void addFrames(const ScanFiles& files, const std::vector<SeenFrame>& seen,
                std::vector<Finding>& findings) {
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (!seen[i].looked || seen[i].why.empty()) continue;
     std::size_t last = i;
-    // The places of a marker that is seen twice change from frame to frame.
+    // The text of a repeated marker differs from frame to frame.
     const auto isLike = [&](const SeenFrame& other) {
       return other.looked && (other.why == seen[i].why || (other.readable && seen[i].readable &&
                                                            other.verdict == RigVerdict::repeated &&
@@ -65,11 +57,11 @@ void addFrames(const ScanFiles& files, const std::vector<SeenFrame>& seen,
     };
     while (last + 1 < seen.size() && isLike(seen[last + 1])) ++last;
     const double from = files.frames[i].t, to = files.frames[last].t;
-    const QString why = QString::fromStdString(seen[i].why);
+    const QString why = shownText(seen[i].why);
     findings.push_back(
         {kindOf(seen[i]), from, to,
-         last == i ? say("frame %1 at %2 s has no pose: %3").arg(i).arg(secondsWords(from), why)
-                   : say("frames %1 to %2, from %3 to %4 s, have no pose: %5")
+         last == i ? tr("frame %1 at %2 s has no pose: %3").arg(i).arg(secondsWords(from), why)
+                   : tr("frames %1 to %2, from %3 to %4 s, have no pose: %5")
                          .arg(i)
                          .arg(last)
                          .arg(secondsWords(from), secondsWords(to), why)});
@@ -78,25 +70,25 @@ void addFrames(const ScanFiles& files, const std::vector<SeenFrame>& seen,
 }
 
 double largestSigma(const std::vector<PathSample>& path, const Gap& gap) {
-  double most = 0;
+  double max_sigma = 0;
   for (const PathSample& sample : path)
-    if (sample.t >= gap.from && sample.t <= gap.to) most = std::max(most, sample.sigma);
-  return most;
+    if (sample.t >= gap.from && sample.t <= gap.to) max_sigma = std::max(max_sigma, sample.sigma);
+  return max_sigma;
 }
 
 void addGaps(const ScanPath& path, std::vector<Finding>& findings) {
   for (const Gap& gap : path.filtered.without_pose) {
-    const double most = largestSigma(path.filtered.path, gap);
+    const double max_sigma = largestSigma(path.filtered.path, gap);
     QString words =
-        say("no pose from %1 to %2 s, for %3 s: the path is bridged")
+        tr("no pose from %1 to %2 s, for %3 s: the path is interpolated")
             .arg(secondsWords(gap.from), secondsWords(gap.to), secondsWords(gap.to - gap.from));
-    if (most > 0) words += say(", sigma grows to %1").arg(inWords(most));
+    if (max_sigma > 0) words += tr(", sigma grows to %1").arg(inWords(max_sigma));
     findings.push_back({Finding::Kind::gap, gap.from, gap.to, words});
   }
   for (const Gap& gap : path.filtered.without_sample)
     findings.push_back(
         {Finding::Kind::dropout, gap.from, gap.to,
-         say("no sample of the probe from %1 to %2 s, for %3 s: the path has none there")
+         tr("no sample of the probe from %1 to %2 s, for %3 s: the path has a gap")
              .arg(secondsWords(gap.from), secondsWords(gap.to), secondsWords(gap.to - gap.from))});
 }
 
@@ -123,7 +115,7 @@ ScanFilter filterFor(const ScanFiles& files) {
 QString wordOf(Finding::Kind kind) {
   constexpr const char* kWords[] = {"unreadable", "no marker", "ambiguous",     "misfit",
                                     "rejected",   "gap",       "probe dropout", "doubt"};
-  return say(kWords[static_cast<std::size_t>(kind)]);
+  return tr(kWords[static_cast<std::size_t>(kind)]);
 }
 
 ScanPath pathOf(const ScanFiles& files, const std::vector<CameraPose>& poses,
@@ -132,10 +124,9 @@ ScanPath pathOf(const ScanFiles& files, const std::vector<CameraPose>& poses,
   made.poses = poses;
   made.probe = files.probe;
   if (!poses.empty()) {
-    ProbeModel probe = files.rig ? files.rig->probe : ProbeModel();
-    probe.tip = files.tip();
-    made.filtered = filterScan(poses, files.probe, probe, filterFor(files), progress);
-    if (const auto& clock = made.filtered.clock; clock && clock->differs)
+    made.filtered =
+        filterStreams({poses, files.probe, files.rates}, files.rig, filterFor(files), progress);
+    if (const auto& clock = made.filtered.clock; clock && clock->is_significant)
       for (ProbeSample& sample : made.probe) sample.t = clock->onCamera(sample.t);
   }
   made.path = files.path;
@@ -146,9 +137,9 @@ ScanPath pathOf(const ScanFiles& files, const std::vector<CameraPose>& poses,
     if (made.path.empty()) made.path = all;
   }
   addFrames(files, seen, made.findings);
-  for (const std::string& doubt : made.filtered.doubts)
+  for (const std::string& doubt : made.filtered.warnings)
     made.findings.push_back(
-        {Finding::Kind::doubt, poses.front().t, poses.front().t, QString::fromStdString(doubt)});
+        {Finding::Kind::doubt, poses.front().t, poses.front().t, shownText(doubt)});
   addGaps(made, made.findings);
   addRejected(made, files.tip(), made.findings);
   std::stable_sort(made.findings.begin(), made.findings.end(),

@@ -1,5 +1,4 @@
-// The scans of the scene: which there are, and what puts one in, opens it or takes it out. Each is
-// an edit like any other.
+// Lists the scans of the scene, and adds, opens or removes them. Each change is an edit with undo.
 #pragma once
 
 #include <QListWidget>
@@ -17,26 +16,32 @@ class SceneScans : public QWidget {
   explicit SceneScans(QWidget* parent = nullptr);
 
   void setEdits(EditThread& edits) { edits_ = &edits; }
-  void setScene(std::shared_ptr<const Scene> scene); // nullptr: none is open
-  void setOpen(bool scan);                           // one is, that could be put in
-  // Each as it is after one more step, which becomes an edit if it changes something.
+  void setScene(std::shared_ptr<const Scene> scene) { // nullptr: none is open.
+    scene_ = std::move(scene);
+    refresh();
+  }
+  void setOpen(bool scan) { // True if a scan is open that could be added.
+    scan_ = scan;
+    refresh();
+  }
+  // The scan after each step; each change becomes an edit.
   void put(const std::vector<SceneScan>& steps);
-  // What the scene's scan becomes, of what it is when the edit's turn comes; nullptr: there is
-  // none. Throws Error why it becomes nothing. `done` is called when it is so in the scene.
+  // Computes the new scan from the scene's scan at the time of the edit; nullptr: there is none.
+  // Throws Error with the reason if it cannot. `done` is called when the scene has changed.
   using Change = std::function<SceneScan(const SceneScan* now)>;
   void change(const std::string& name, const Change& change, std::function<void()> done = {});
   const Scene* scene() const { return scene_.get(); }
 
  signals:
-  void putAsked();
-  void openAsked(const patina::SceneScan& scan);
+  void putRequested();
+  void openRequested(const patina::SceneScan& scan);
   void failed(const QString& problem);
-  void said(const patina::Message& message);
+  void notified(const patina::Message& message);
 
  private:
   SceneScan ask(const std::string& name, const SceneScan* before, const Change& change,
                 std::function<void()> done = {});
-  void tellLost(const SceneScan* before, const SceneScan& after);
+  void reportLost(const SceneScan* before, const SceneScan& after);
   const SceneScan* chosen() const;
   void apply(const std::string& what, std::function<Scene(const Scene&)> edit,
              std::function<void()> done = {});

@@ -1,10 +1,22 @@
 #include "app/gui/servo/live_plots.h"
 
+#include <QCheckBox>
+
+#include "app/gui/toolkit/card.h"
+
 namespace patina {
+
+void EnergyMeter::add(const ToolSample& sample) {
+  if (before_) {
+    if (from_each_touch && before_->force.isZero(0) && !sample.force.isZero(0)) ledger = {};
+    ledger.add(before_->force, sample.tip - before_->tip, 0, sample.t - before_->t);
+  }
+  before_ = sample;
+}
 
 ForcePlot::ForcePlot(QWidget* parent)
     : StripPlot(QStringLiteral("N"),
-                {{QStringLiteral("|F|"), "text", 2.0, true}, // told apart by any eye
+                {{QStringLiteral("|F|"), "text", 2.0, true}, // A distinct colour.
                  {QStringLiteral("x"), "series_x"},
                  {QStringLiteral("y"), "series_y"},
                  {QStringLiteral("z"), "series_z"}},
@@ -22,17 +34,14 @@ void ForcePlot::addSamples(const std::vector<ToolSample>& samples) {
 EnergyPlot::EnergyPlot(QWidget* parent)
     : StripPlot(QStringLiteral("mJ"),
                 {{QStringLiteral("E"), "series_e", 2.0}, {tr("lowest"), "series_x"}}, 1.0, parent) {
-  setToolTip(tr("Energy that the surface has taken from the hand. A spring gives back what it "
-                "took; friction and damping keep it. Well below zero the surface feeds the hand: "
-                "that is what a buzz lives on."));
-  auto* each = new QCheckBox(tr("Each touch"), this);
-  each->setObjectName(QStringLiteral("energy_each_touch"));
-  each->setToolTip(tr("Begin at zero whenever a force begins"));
+  setToolTip(
+      tr("Energy absorbed by the surface. A spring returns it, friction and damping dissipate it. "
+         "A clearly negative value means that the surface drives the hand: the loop is unstable."));
+  auto* each = named(new QCheckBox(tr("Each touch"), this), "energy_each_touch",
+                     tr("Restarts at zero with each contact"));
   connect(each, &QCheckBox::toggled, this, [this](bool on) { meter_.from_each_touch = on; });
-  auto* zero = new QToolButton(this);
-  zero->setObjectName(QStringLiteral("energy_reset"));
+  auto* zero = named(new QToolButton(this), "energy_reset", tr("Sets the energy to zero"));
   zero->setText(tr("Zero"));
-  zero->setToolTip(tr("Count from now"));
   connect(zero, &QToolButton::clicked, this, [this] { meter_.ledger = {}; });
   addToCorner(each);
   addToCorner(zero);

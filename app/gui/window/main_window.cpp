@@ -1,29 +1,96 @@
 #include "app/gui/window/main_window.h"
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
 #include <QCloseEvent>
 #include <QScreen>
+#include <QStatusTipEvent>
 
-#include "app/gui/control/opening_desk.h"
-#include "app/gui/control/touching.h"
-#include "app/gui/loading/load_dialogs.h"
-#include "app/gui/widgets/words.h"
-#include "app/gui/window/window_menus.h"
-#ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/aligning/fit_words.h"
+#include "app/gui/loading/load_dialogs.h"
 #include "app/gui/scanning/scan_desk.h"
+#include "app/gui/state/contact_offset.h"
 #include "app/gui/texturing/texture_desk.h"
-#endif
+#include "app/gui/toolkit/words.h"
+#include "app/gui/window/status_line.h"
+#include "core/error.h"
+#include "core/partial_output.h"
+#include "session/store/autosave.h"
 
 namespace patina {
+
+RecoveryOffer::RecoveryOffer(const NoticeBar& bar, QObject* parent) : QObject(parent) {
+  connect(bar.button("later"), &QPushButton::clicked, this, &RecoveryOffer::next);
+  connect(bar.button("forget"), &QPushButton::clicked, this, [this] {
+    try {
+      Autosave::adopt(places_.front())->claim(); // The destructor deletes it.
+    } catch (const Error&) {                     // Another program has taken it meanwhile.
+    }
+    next();
+  });
+  connect(bar.button("recover"), &QPushButton::clicked, this, [this] {
+    const std::filesystem::path place = places_.front();
+    next();
+    emit taken(place);
+  });
+}
+
 namespace {
-constexpr int kNarrow = 1100; // without room for the column
-// Of what a window manager draws about a window, which it says only of one that is seen.
+
+// Switches to a desk that shows the scene being opened, and back if loading fails.
+class LoadingMode : public QObject {
+ public:
+  // is_seen: the desk in front shows the scene.
+  LoadingMode(DocumentController& documents, DeskController& desks, std::function<bool()> is_seen,
+              QObject* parent)
+      : QObject(parent), desks_(desks), is_seen_(std::move(is_seen)) {
+    connect(&documents, &DocumentController::opening, this, [this] { begin(); });
+    connect(&documents, &DocumentController::previewed, this, [this] { showLoading(); });
+    for (const auto signal : {&DocumentController::loadFinished, &DocumentController::alreadyOpen})
+      connect(&documents, signal, this, [this] {
+        showLoading();
+        end();
+      });
+    connect(&documents, &DocumentController::abandoned, this, [this] { restoreMode(); });
+  }
+
+ private:
+  void begin() {
+    // A load that replaces another one restores the desk on which the first one began.
+    if (switched_ && desks_.desk() == Desk::feel) return;
+    previous_ = desks_.desk();
+    switched_ = false;
+  }
+  void showLoading() {
+    // A desk that the user has chosen meanwhile stays.
+    if (previous_ != desks_.desk() || is_seen_()) return;
+    switched_ = true;
+    desks_.choose(Desk::feel);
+  }
+  void restoreMode() {
+    const std::optional<Desk> back =
+        switched_ && desks_.desk() == Desk::feel ? previous_ : std::nullopt;
+    end();
+    if (back) desks_.choose(*back);
+  }
+  void end() {
+    previous_.reset();
+    switched_ = false;
+  }
+
+  DeskController& desks_;
+  std::function<bool()> is_seen_;
+  std::optional<Desk> previous_; // Desk at the start; nullopt: nothing is being opened.
+  bool switched_ = false;        // Switched to Feel for the new scene.
+};
+
+constexpr int kNarrow = 1100; // Narrower windows have no room for the side panel [px].
+// Window managers report their frame only for visible windows.
 constexpr QSize kManagersFrame{12, 44};
 
-#ifdef PATINA_HAS_ACQUISITION
 GuideFacts guideFacts(const WindowParts& parts, const CompiledScene* scene, double felt) {
   GuideFacts facts;
   facts.force = felt;
@@ -33,7 +100,7 @@ GuideFacts guideFacts(const WindowParts& parts, const CompiledScene* scene, doub
   facts.samples = aligned.path().size();
   if (const auto& found = parts.align->alignment().found()) {
     facts.off = found->rms;
-    facts.doubt = doubtWords(*found);
+    facts.doubt = warningText(*found);
   }
   if (scene != nullptr)
     for (const SceneObject& object : scene->scene.objects)
@@ -41,86 +108,82 @@ GuideFacts guideFacts(const WindowParts& parts, const CompiledScene* scene, doub
         facts.faces += object.paint->textures->faces.size();
   return facts;
 }
-#endif
 
 std::function<bool(const std::filesystem::path&)> opensScans(const WindowParts& parts) {
-#ifdef PATINA_HAS_ACQUISITION
   return [scan = parts.scan](const std::filesystem::path& path) {
     if (!isScanFolder(path)) return false;
     scan->open(path);
     return true;
   };
-#else
-  static_cast<void>(parts);
-  return {};
-#endif
 }
 } // namespace
 
 MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), parts_(layOut(*this)),
       feel_({*this, *parts_.force, *parts_.energy}, this),
-      view_({*parts_.view, *parts_.display, *parts_.paint, *parts_.mesh}, this),
+      view_({*parts_.view, *parts_.display, *parts_.paint, *parts_.colors, *parts_.mesh}, this),
       edits_(
           {*parts_.haptics, *parts_.device, *parts_.objects, *parts_.relief, *parts_.history},
           [this](const CompiledScene& compiled) { feel_.servo().publish(compiled.snapshot); },
-          this),
+          [this](std::vector<ToolSample>& into) { feel_.servo().takePaintSamples(into); }, this),
       paint_({*parts_.tools, *parts_.brush, *parts_.tool, *parts_.view, feel_.servo(),
               edits_.thread()},
              this),
+      probe_(*parts_.view, this), measure_({*parts_.view, *parts_.measure, edits_.thread()}, this),
       saving_(*this, edits_, this),
       documents_({*this, *parts_.recent, edits_, saving_, opensScans(parts_)}, this),
-      recovery_(*parts_.recover, this),
-      desks_({*parts_.tools, *parts_.across, *parts_.down, *parts_.column, *parts_.drawer}, this) {
-  addMenus(*this, parts_, controllers());
+      recovery_(*parts_.recover, this), desks_({*parts_.tools, *parts_.across, *parts_.down,
+                                                *parts_.side_panel, *parts_.bottom_panel},
+                                               this) {
+  addMenus();
   connectFiles();
   connectWelcome();
   connectScene();
   connectTools();
-#ifdef PATINA_HAS_ACQUISITION
   connectScan();
-#endif
   refresh();
-  // One timer draws everything; what did not change is not drawn again.
+  // One timer drives all drawing; unchanged parts are not drawn again.
   timer_.setTimerType(Qt::PreciseTimer);
   connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
   timer_.start(33);
 }
 
 void MainWindow::connectFiles() {
-  new OpeningDesk(
+  new LoadingMode(
       documents_, desks_, [this] { return isSeen(state()); }, this);
   connect(&documents_, &DocumentController::changed, this, &MainWindow::refresh);
   connect(&documents_, &DocumentController::previewed, this, &MainWindow::showPreview);
   connect(&documents_, &DocumentController::abandoned, this, &MainWindow::showAgain);
-  connect(&documents_, &DocumentController::openAlready, this, &MainWindow::sceneReady);
-  connect(&documents_, &DocumentController::said, this, &MainWindow::say);
-  connect(&saving_, &SaveController::said, this, &MainWindow::say);
+  connect(&documents_, &DocumentController::alreadyOpen, this, &MainWindow::sceneReady);
+  connect(&documents_, &DocumentController::notified, this, &MainWindow::say);
+  connect(&saving_, &SaveController::notified, this, &MainWindow::say);
   connect(&recovery_, &RecoveryOffer::changed, this, &MainWindow::refresh);
   connect(&recovery_, &RecoveryOffer::taken, &documents_, [this](const auto& place) {
-    LoadRequest request;
-    request.place = place;
-    documents_.openAsked(request);
+    if (holdsRecording(place)) return feel_.recover(place);
+    documents_.openRequested({.place = place});
   });
-  connect(&feel_, &FeelController::said, this, &MainWindow::say);
-  connect(&view_, &ViewController::said, this, &MainWindow::say);
+  connect(parts_.storage->button("save_elsewhere"), &QPushButton::clicked, &saving_,
+          &SaveController::saveDialog);
+  connect(&feel_, &FeelController::notified, this, &MainWindow::say);
+  connect(&view_, &ViewController::colorsEdited, &edits_, &EditController::changeColors);
+  connect(&edits_, &EditController::colorsDone, &view_, &ViewController::colorsDone);
+  connect(&measure_, &MeasureController::notified, this, &MainWindow::say);
+  connect(&view_, &ViewController::notified, this, &MainWindow::say);
   connect(parts_.notice, &NoticeLine::opened, &desks_, [this] { desks_.open(Panel::messages); });
   connect(parts_.load_bar, &LoadBar::cancelled, &documents_, &DocumentController::cancel);
-  connect(parts_.objects, &ObjectList::addAsked, &documents_,
+  connect(parts_.objects, &ObjectList::addRequested, &documents_,
           [this] { documents_.openDialog(true); });
 }
 
 void MainWindow::connectWelcome() {
   WelcomePage* page = parts_.welcome;
   page->setRecent(documents_.recent());
-  connect(page, &WelcomePage::openAsked, &documents_, [this] { documents_.openDialog(false); });
+  connect(page, &WelcomePage::openRequested, &documents_, [this] { documents_.openDialog(false); });
   connect(page, &WelcomePage::recentChosen, &documents_, &DocumentController::openFile);
   connect(page, &WelcomePage::presetChosen, &documents_, [this](const QString& name) {
-    LoadRequest request;
-    request.preset = name.toStdString();
-    documents_.openAsked(request);
+    documents_.openRequested({.preset = name.toStdString()});
   });
-  connect(page, &WelcomePage::guideAsked, &desks_, [this] {
+  connect(page, &WelcomePage::guideRequested, &desks_, [this] {
     parts_.guide->setOpen(true);
     desks_.choose(Desk::scan);
   });
@@ -132,28 +195,33 @@ void MainWindow::connectScene() {
   connect(&edits_, &EditController::sceneChanged, this, &MainWindow::showScene);
   connect(&edits_, &EditController::changed, this, &MainWindow::refresh);
   connect(&edits_, &EditController::refused, this, [this](const QString& problem) {
-    showProblem(this, tr("That cannot be done"), problem, tr("The scene is as it was before."));
+    showProblem(this, tr("The edit has failed"), problem, tr("The scene is unchanged."));
   });
   connect(&feel_, &FeelController::changed, this, &MainWindow::refresh);
   connect(&feel_, &FeelController::collected, &paint_, &PaintController::feed);
   connect(&feel_, &FeelController::failed, parts_.haptics, &HapticsPanel::setProblem);
-  connect(&feel_.stability(), &StabilityJob::said, parts_.display, &DisplayPanel::setStabilityNote);
+  connect(&feel_.stability(), &StabilityJob::notified, parts_.display,
+          &DisplayPanel::setStabilityNote);
   connect(&feel_.stability(), &StabilityJob::done, &view_, &ViewController::showStability);
 }
 
 void MainWindow::connectTools() {
-  connect(&desks_, &DeskController::changed, this, &MainWindow::refresh);
+  connect(&desks_, &DeskController::changed, this, [this] {
+    view_.setAligning(desks_.desk() == Desk::align);
+    refresh();
+  });
   connect(&paint_, &PaintController::chosen, this, [this](const ToolChoice& choice) {
     parts_.paint->setTool(choice);
     parts_.tool->setTool(choice);
     edits_.setTool(choice);
+    measure_.setTool(choice);
     refresh();
   });
-  connect(&paint_, &PaintController::underPointer, parts_.status, &StatusLine::showPicked);
+  connect(&probe_, &ProbeController::underPointer, parts_.status, &StatusLine::showPicked);
   connect(parts_.view, &SceneWidget::tipMoved, &feel_,
           [this](const Vec3& target) { feel_.servo().setTarget(target); });
-  connect(parts_.view, &SceneWidget::placeAsked, &feel_, [this](const Vec3& surface) {
-    const Vec3 tip = touching(*edits_.scene(), surface);
+  connect(parts_.view, &SceneWidget::placeRequested, &feel_, [this](const Vec3& surface) {
+    const Vec3 tip = tipAtContact(*edits_.scene(), surface);
     parts_.view->setTarget(tip);
     feel_.place(edits_.scene()->scene, tip);
   });
@@ -179,8 +247,8 @@ WindowState MainWindow::state() const {
   state.recording = feel_.recording();
   state.name = state.content == Content::preview ? documents_.nameUnderWay() : saving_.name();
   state.work = documents_.work() ? documents_.work() : edits_.work();
-  state.left_behind = recovery_.present();
-#ifdef PATINA_HAS_ACQUISITION
+  state.recoverable_scenes = recovery_.present();
+  state.storage_problem = documents_.storageProblem();
   state.scan = parts_.scan->isOpen();
   if (state.name.isEmpty()) state.name = parts_.scan->scan().name();
   if (!state.work) state.work = parts_.scan->work();
@@ -197,30 +265,28 @@ WindowState MainWindow::state() const {
     state.undoable = aligned.done();
     state.redoable = aligned.undone();
   }
-#endif
   return state;
 }
 
-void MainWindow::refresh() {
-  showState(state(), parts_, *this);
-}
-
-void MainWindow::say(const Message& message) {
+void MainWindow::say(Message message) {
+  message.words = withoutCommands(message.words);
   parts_.messages->add(message);
-  if (!parts_.messages->isVisible()) parts_.notice->show(message); // or it would be there twice
+  if (!parts_.messages->isVisible()) parts_.notice->show(message);
 }
 
 void MainWindow::tick() {
-  edits_.tryValues();
+  edits_.previewValues();
   feel_.collect();
-  // Qt draws a label no sooner after another picture than a screen can show it: this picture waits.
-  if (parts_.status->showHeldBack(feel_.heldBack())) return;
+  // Qt delays a label's update until the next screen refresh, so the picture is drawn later.
+  if (parts_.status->showHeldBack(feel_.inhibitText())) return;
   paint_.refresh();
+  probe_.refresh();
   if (feel_.servo().running()) view_.view().setTool(feel_.sample());
   if (feel_.servo().running()) felt_ = std::max(felt_, feel_.sample().force.norm());
   view_.refresh();
-  feel_.look(); // what has come while the picture was drawn does not wait for the next tick
-  parts_.status->showHeldBack(feel_.heldBack());
+  if (desks_.desk() == Desk::align) parts_.colors->setRange(parts_.align->shownRange());
+  feel_.checkDevice(); // Events that came during drawing are handled at once.
+  parts_.status->showHeldBack(feel_.inhibitText());
   parts_.force->refresh();
   parts_.energy->refresh();
   parts_.status->showFault(feel_.servo().running() && feel_.sample().fault);
@@ -238,6 +304,8 @@ void MainWindow::tick() {
 void MainWindow::clear() {
   feel_.close();
   paint_.setScene(nullptr, false);
+  probe_.setScene(nullptr);
+  measure_.setScene(nullptr, true);
   parts_.status->showScene(nullptr);
 }
 
@@ -260,19 +328,18 @@ void MainWindow::showAgain() {
 
 void MainWindow::showScene(const SceneChange& change) {
   const bool edited = change.step == SceneChange::Step::edited;
-  if (edited && view_.content() == Content::preview) return; // seen if the preview comes to nothing
+  if (edited && view_.content() == Content::preview) return; // Shown only if the preview fails.
   view_.showScene(change);
-#ifdef PATINA_HAS_ACQUISITION
-  parts_.scan->cells()->setSceneMesh(change.scene->mesh);
+  parts_.scan->centralViews()->setSceneMesh(change.scene->mesh);
   const std::shared_ptr<const Scene> scene(change.scene, &change.scene->scene);
   parts_.scan->setScene(scene);
   parts_.align->files().setScene(scene);
+  parts_.align->setColors(scaleOf(scene->colors, "error"));
   parts_.texture->library().setScene(change.scene);
   if (change.step == SceneChange::Step::another)
     parts_.align->setSceneMesh(change.scene->mesh);
   else if (change.surface)
     parts_.align->changeSceneMesh(change.scene->mesh);
-#endif
   if (change.surface) felt_ = 0;
   if (change.device) {
     const Vec3 start = edited ? feel_.sample().tip : parts_.view->restingPlace();
@@ -280,6 +347,8 @@ void MainWindow::showScene(const SceneChange& change) {
     feel_.open(change.scene->scene, start);
   }
   paint_.setScene(change.scene, change.step == SceneChange::Step::another);
+  probe_.setScene(change.scene);
+  measure_.setScene(change.scene, change.surface);
   if (change.values) {
     parts_.status->showScene(change.scene.get());
     askStability();
@@ -292,32 +361,47 @@ void MainWindow::showScene(const SceneChange& change) {
 
 void MainWindow::askStability() {
   const bool wanted = view_.content() == Content::scene && parts_.display->shown(Layer::stability);
-  view_.showStability(nullptr); // of what was
+  view_.showStability(nullptr); // The old map is invalid.
   feel_.stability().request(wanted ? edits_.scene() : nullptr);
 }
 
+// Views send the values under the pointer as status tips.
+bool MainWindow::event(QEvent* event) {
+  if (event->type() != QEvent::StatusTip) return QMainWindow::event(event);
+  parts_.status->showPicked(static_cast<QStatusTipEvent*>(event)->tip());
+  return true;
+}
+
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (documents_.asks() && !closing_ && !(feel_.settleRecording() && saving_.settleEdits()))
+  if (documents_.isInteractive() && !closing_ &&
+      !(feel_.confirmRecording() && saving_.confirmEdits()))
     return event->ignore();
   closing_ = true;
   timer_.stop();
   desks_.remember(*this);
   parts_.relief->cancel();
   feel_.close();
-  if (documents_.close()) return event->accept();
-  connect(&documents_, &DocumentController::rested, this, &QWidget::close, Qt::UniqueConnection);
-  event->ignore();
+  documents_.close();
+  event->accept();
+}
+
+bool MainWindow::isReading() const {
+  const auto jobs = findChildren<Background*>();
+  return std::any_of(jobs.begin(), jobs.end(),
+                     [](const Background* job) { return !job->isIdle(); });
+}
+
+void MainWindow::finishWithoutReaders() {
+  parts_.scan->finishRecording();
+  edits_.thread().stop();
+  removeUnfinished();
 }
 
 void MainWindow::restorePlace() {
-  const WindowPlace place = rememberedPlace();
+  const WindowGeometry place = rememberedPlace();
   resize(place.size.boundedTo(screen()->availableSize() - kManagersFrame));
   if (place.maximized) setWindowState(Qt::WindowMaximized);
   desks_.restore();
-  comeInSight();
-}
-
-void MainWindow::comeInSight() {
   if (!isSeen(state())) desks_.choose(Desk::feel);
 }
 

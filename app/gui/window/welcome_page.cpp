@@ -2,14 +2,11 @@
 
 #include <QEvent>
 #include <QFileInfo>
-#include <QHBoxLayout>
-#include <QLabel>
-#include <QPushButton>
 
 #include "app/gui/loading/presets.h"
-#include "app/gui/panels/value_row.h"
-#include "app/gui/window/desk.h"
-#include "app/gui/window/theme.h"
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/theme.h"
+#include "app/gui/toolkit/value_row.h"
 
 namespace patina {
 namespace {
@@ -18,9 +15,7 @@ constexpr int kRecentShown = 5;
 constexpr QSize kPicture{144, 108};
 
 QLabel* heading(const QString& words, const char* name) {
-  auto* label = new QLabel(words);
-  label->setObjectName(QString::fromUtf8(name));
-  return label;
+  return named(new QLabel(words), name);
 }
 
 } // namespace
@@ -30,40 +25,33 @@ WelcomePage::WelcomePage(QWidget& over)
   hide();
   setObjectName(QStringLiteral("welcome"));
   setCursor(Qt::ArrowCursor);
-  setFocusPolicy(Qt::NoFocus); // the keys are its cards'
-  dress(*this,
-        QStringLiteral(
-            "QScrollArea#welcome, QWidget#welcome_page {"
-            " background: @window; }"
-            "QLabel#welcome_title { color: @text; font-size: 15pt; font-weight: bold; }"
-            "QLabel#welcome_words { color: @quiet; }"
-            "QLabel#welcome_recent, QLabel#welcome_try { color: @text; font-weight: bold; }"
-            "QToolButton { background: @card; color: @text; border: 1px solid @line;"
-            " border-radius: 6px; padding: 6px; }"
-            "QToolButton:hover { background: @hover; }"
-            "QToolButton:focus { border: 2px solid @accent; padding: 5px; }"
-            "QPushButton[recent=\"true\"] { border: 1px solid transparent; border-radius: 4px;"
-            " color: @link; background: transparent; text-align: left; padding: 3px 4px; }"
-            "QPushButton[recent=\"true\"]:hover { background: @hover; }"
-            "QPushButton[recent=\"true\"]:focus { border-color: @accent; }"));
+  setFocusPolicy(Qt::NoFocus); // Its cards take the keys.
+  applyStyleSheet(
+      *this, QStringLiteral(
+                 "QScrollArea#welcome, QWidget#welcome_page {"
+                 " background: @window; }"
+                 "QLabel#welcome_title { color: @text; font-size: 15pt; font-weight: bold; }"
+                 "QLabel#welcome_words { color: @quiet; }"
+                 "QLabel#welcome_recent, QLabel#welcome_try { color: @text; font-weight: bold; }"
+                 "QToolButton { background: @card; color: @text; border: 1px solid @line;"
+                 " border-radius: 6px; padding: 6px; }"
+                 "QToolButton:hover { background: @hover; }"
+                 "QToolButton:focus { border: 2px solid @accent; padding: 5px; }"
+                 "QPushButton[recent=\"true\"] { border: 1px solid transparent; border-radius: 4px;"
+                 " color: @link; background: transparent; text-align: left; padding: 3px 4px; }"
+                 "QPushButton[recent=\"true\"]:hover { background: @hover; }"
+                 "QPushButton[recent=\"true\"]:focus { border-color: @accent; }"));
   auto* column = new QVBoxLayout;
   column->setSpacing(8);
   column->addWidget(heading(tr("Surfaces to see, shape and feel"), "welcome_title"));
   column->addWidget(heading(tr("Open a mesh, a volume, a workspace or a scan, or drop it here."),
                             "welcome_words"));
   auto* line = new QHBoxLayout;
-  auto* open = new QPushButton(tr("Open…"));
-  open->setObjectName(QStringLiteral("welcome_open"));
-  open->setToolTip(tr("A mesh, a volume, a workspace or a scan folder"));
-  connect(open, &QPushButton::clicked, this, &WelcomePage::openAsked);
-  line->addWidget(open);
-  if (isBuilt(Desk::texture)) {
-    auto* guide = new QPushButton(tr("From a scan to a feel…"));
-    guide->setObjectName(QStringLiteral("welcome_guide"));
-    guide->setToolTip(tr("The desks Scan, Align and Texture, step by step"));
-    connect(guide, &QPushButton::clicked, this, &WelcomePage::guideAsked);
-    line->addWidget(guide);
-  }
+  addButton(line, "welcome_open", tr("Open…"), tr("A mesh, a volume, a workspace or a scan folder"),
+            this, &WelcomePage::openRequested);
+  addButton(line, "welcome_guide", tr("From a scan to a feel…"),
+            tr("The desks Scan, Align and Texture, step by step"), this,
+            &WelcomePage::guideRequested);
   line->addStretch(1);
   column->addLayout(line);
   column->addSpacing(10);
@@ -74,8 +62,7 @@ WelcomePage::WelcomePage(QWidget& over)
   across->addStretch(1);
   across->addLayout(column);
   across->addStretch(1);
-  auto* page = new QWidget; // where there is no room for it, it is scrolled
-  page->setObjectName(QStringLiteral("welcome_page"));
+  auto* page = named(new QWidget, "welcome_page"); // Scrolled if there is no room.
   auto* whole = new QVBoxLayout(page);
   whole->addStretch(1);
   whole->addLayout(across);
@@ -93,17 +80,14 @@ void WelcomePage::addPresets(QVBoxLayout& column) {
   row->setSpacing(8);
   for (const Preset& preset : presets()) {
     const QString name = QString::fromStdString(preset.name);
-    auto* button = new QToolButton;
-    button->setObjectName(QStringLiteral("preset_") + name);
+    auto* button =
+        addButton<QToolButton>(row, ("preset_" + preset.name).c_str(), preset.words, preset.tip,
+                               this, [this, name] { emit presetChosen(name); });
     button->setIcon(QIcon(pictureOf(preset)));
     button->setIconSize(kPicture);
-    button->setText(preset.words);
-    button->setToolTip(preset.tip);
     button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
     button->setFocusPolicy(Qt::StrongFocus);
     button->setFixedWidth(kPicture.width() + 22);
-    connect(button, &QToolButton::clicked, this, [this, name] { emit presetChosen(name); });
-    row->addWidget(button);
     if (first_ == nullptr) first_ = button;
   }
   column.addLayout(row);
@@ -116,9 +100,7 @@ void WelcomePage::setRecent(const QStringList& paths) {
   recent_ = nullptr;
   if (paths.isEmpty()) return;
   recent_ = new QWidget(this);
-  auto* column = new QVBoxLayout(recent_);
-  column->setContentsMargins(0, 0, 0, 0);
-  column->setSpacing(2);
+  auto* column = layoutIn<QVBoxLayout>(recent_, 2);
   column->addWidget(heading(tr("Open again"), "welcome_recent"));
   for (const QString& path : paths.mid(0, kRecentShown)) {
     const QFileInfo file(path);
@@ -138,7 +120,7 @@ void WelcomePage::setShown(bool on) {
   if (isHidden() != on) return;
   setVisible(on);
   if (on) raise();
-  if (!over_.isHidden()) takeKeys(); // or they are another desk's
+  if (!over_.isHidden()) takeKeys(); // Otherwise another desk has the keys.
 }
 
 void WelcomePage::takeKeys() {

@@ -1,4 +1,4 @@
-// What stands in the place of the 3D view while nothing is open: ways to begin.
+// The page with ways to begin, shown instead of the 3D view while nothing is open.
 #pragma once
 
 #include <QScrollArea>
@@ -11,26 +11,26 @@ namespace patina {
 class WelcomePage : public QScrollArea {
   Q_OBJECT
  public:
-  explicit WelcomePage(QWidget& over); // covers it, and belongs to it
+  explicit WelcomePage(QWidget& over); // Covers `over`, which owns it.
 
   void setRecent(const QStringList& paths);
-  void setShown(bool on); // takes the keys when it comes
+  void setShown(bool on); // Takes the keys when shown.
 
  signals:
-  void openAsked();
+  void openRequested();
   void presetChosen(const QString& name);
   void recentChosen(const QString& path);
-  void guideAsked(); // from a scan to a feel
+  void guideRequested(); // Opens the guide from a scan to haptic rendering.
 
  protected:
   bool eventFilter(QObject* receiver, QEvent* event) override;
 
  private:
-  void takeKeys(); // or hands them to what it covers
+  void takeKeys();
   void addPresets(QVBoxLayout& column);
 
   QWidget& over_;
-  QToolButton* first_ = nullptr; // of the presets
+  QToolButton* first_ = nullptr;
   QWidget* recent_ = nullptr;
   QVBoxLayout* recent_column_;
   QStringList recent_paths_;

@@ -1,33 +1,161 @@
-#include "app/gui/window/window_menus.h"
+// The menus of the window.
+#include <algorithm>
 
+#include <QDialog>
 #include <QDialogButtonBox>
+#include <QFile>
+#include <QKeyEvent>
+#include <QLineEdit>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QRegularExpression>
+#include <QShortcut>
 #include <QTextBrowser>
 #include <QToolBar>
 #include <QVBoxLayout>
 
-#include "app/gui/control/desk_controller.h"
-#include "app/gui/control/document_controller.h"
-#include "app/gui/control/edit_controller.h"
-#include "app/gui/control/feel_controller.h"
-#include "app/gui/control/view_controller.h"
-#include "app/gui/loading/up_choice.h"
-#include "app/gui/painting/paint_controller.h"
-#include "app/gui/widgets/words.h"
-#include "app/gui/window/action_search.h"
-#include "app/gui/window/theme.h"
-#include "app/gui/window/user_guide.h"
-#include "core/version.h"
-#include "visualization/view/camera.h"
-#ifdef PATINA_HAS_ACQUISITION
 #include "app/gui/aligning/align_desk.h"
+#include "app/gui/loading/up_choice.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
-#endif
+#include "app/gui/toolkit/card.h"
+#include "app/gui/toolkit/theme.h"
+#include "app/gui/toolkit/words.h"
+#include "app/gui/window/main_window.h"
+#include "core/version.h"
+#include "visualization/values/camera.h"
+
+void initGuideResource() {
+  Q_INIT_RESOURCE(user_guide);
+}
 
 namespace patina {
 namespace {
+
+// Shows docs/user_guide.md, as of the build.
+class GuideWindow final : public QWidget {
+ public:
+  explicit GuideWindow(QWidget& over) : QWidget(&over, Qt::Window) {
+    setObjectName(QStringLiteral("user_guide"));
+    setWindowTitle(tr("User guide"));
+    setAttribute(Qt::WA_DeleteOnClose);
+    resize(760, 640);
+    auto* find = named(new QLineEdit(this), "guide_find");
+    find->setPlaceholderText(tr("Find in the guide; Return finds the next"));
+    auto* text = named(new QTextBrowser(this), "guide_text");
+    text->setOpenLinks(false); // Links lead to other files of the project.
+    initGuideResource();
+    QFile file(QStringLiteral(":/user_guide.md"));
+    if (file.open(QIODevice::ReadOnly)) {
+      static const QRegularExpression kImageLink(QStringLiteral(R"(!\[[^\]]*\]\([^)]*\))"));
+      text->setMarkdown(QString::fromUtf8(file.readAll()).remove(kImageLink));
+    }
+    connect(new QShortcut(Qt::Key_Escape, this), &QShortcut::activated, this, &QWidget::close);
+    auto* column = new QVBoxLayout(this);
+    column->addWidget(find);
+    column->addWidget(text);
+    connect(find, &QLineEdit::returnPressed, text, [find, text] {
+      if (text->find(find->text())) return;
+      text->moveCursor(QTextCursor::Start); // The search wraps around.
+      text->find(find->text());
+    });
+  }
+};
+
+// Raises the window if it is open.
+void showGuide(QWidget& over) {
+  auto* guide = over.findChild<QWidget*>(QStringLiteral("user_guide"));
+  if (!guide) guide = new GuideWindow(over);
+  guide->show();
+  guide->raise();
+  guide->activateWindow();
+}
+
+struct Found {
+  QString words;
+  QAction* action;
+};
+
+QString plain(QString words) {
+  return words.remove('&').remove(QStringLiteral("…"));
+}
+
+// Collects entries such as "File › Save workspace as".
+void collect(const QMenu& menu, const QString& above, std::vector<Found>& into) {
+  for (QAction* action : menu.actions()) {
+    if (action->isSeparator() || !action->isVisible()) continue;
+    const QString words = above + QStringLiteral(" › ") + plain(action->text());
+    if (action->menu())
+      collect(*action->menu(), words, into);
+    else
+      into.push_back({words, action});
+  }
+}
+
+// Lists the actions of all menus that contain all typed words, with their keys; disabled ones are
+// grey. Return or a click runs the selected action, Esc closes.
+class ActionSearch final : public QDialog {
+ public:
+  explicit ActionSearch(QMainWindow& window) : QDialog(&window) {
+    setObjectName(QStringLiteral("action_search"));
+    setWindowTitle(tr("Search actions"));
+    setAttribute(Qt::WA_DeleteOnClose);
+    resize(520, 360);
+    for (QAction* entry : window.menuBar()->actions())
+      if (entry->menu()) collect(*entry->menu(), plain(entry->text()), all_);
+    line_->setPlaceholderText(tr("Search the actions"));
+    list_->setFocusPolicy(Qt::NoFocus);
+    auto* column = new QVBoxLayout(this);
+    column->addWidget(line_);
+    column->addWidget(list_);
+    connect(line_, &QLineEdit::textChanged, this, &ActionSearch::show);
+    connect(line_, &QLineEdit::returnPressed, this, &ActionSearch::act);
+    connect(list_, &QListWidget::itemClicked, this, &ActionSearch::act);
+    line_->installEventFilter(this);
+    show({});
+  }
+
+ protected:
+  bool eventFilter(QObject*, QEvent* event) override {
+    if (event->type() != QEvent::KeyPress) return false;
+    const int key = static_cast<QKeyEvent*>(event)->key();
+    if (key != Qt::Key_Up && key != Qt::Key_Down) return false;
+    const int row = list_->currentRow() + (key == Qt::Key_Down ? 1 : -1);
+    list_->setCurrentRow(std::clamp(row, 0, std::max(0, list_->count() - 1)));
+    return true;
+  }
+
+ private:
+  void show(const QString& typed) {
+    list_->clear();
+    const QStringList words = typed.split(' ', Qt::SkipEmptyParts);
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      const auto holds = [&](const QString& word) {
+        return all_[i].words.contains(word, Qt::CaseInsensitive);
+      };
+      if (!std::all_of(words.begin(), words.end(), holds)) continue;
+      const QString key = all_[i].action->shortcut().toString(QKeySequence::NativeText);
+      auto* item = new QListWidgetItem(
+          key.isEmpty() ? all_[i].words : all_[i].words + QStringLiteral("   ") + key, list_);
+      item->setData(Qt::UserRole, static_cast<int>(i));
+      if (!all_[i].action->isEnabled()) item->setFlags(Qt::NoItemFlags);
+    }
+    for (int row = 0; row < list_->count() && list_->currentRow() < 0; ++row)
+      if (list_->item(row)->flags() & Qt::ItemIsEnabled) list_->setCurrentRow(row);
+  }
+
+  void act() {
+    const QListWidgetItem* item = list_->currentItem();
+    if (!item || !(item->flags() & Qt::ItemIsEnabled)) return;
+    QAction* action = all_[static_cast<std::size_t>(item->data(Qt::UserRole).toInt())].action;
+    accept();
+    action->trigger();
+  }
+
+  std::vector<Found> all_;
+  QLineEdit* line_ = named(new QLineEdit(this), "action_words");
+  QListWidget* list_ = named(new QListWidget(this), "action_list");
+};
 
 QString shortcutsText() {
   return QMainWindow::tr(
@@ -48,37 +176,47 @@ QString shortcutsText() {
       "<tr><td><b>O</b></td><td>without perspective, and with it</td></tr>"
       "<tr><td><b>M T S I W N B E K</b></td><td>mesh, tool, slice, iso-surface, wireframe, nodes, "
       "band, field extent, stability</td></tr>"
-      "<tr><td><b>Shift + S</b></td><td>clip plane: cuts away what lies ahead of it</td></tr>"
+      "<tr><td><b>Shift + S</b></td><td>clip plane: hides the part in front of it</td></tr>"
       "<tr><td><b>V A P H D G J U X</b></td><td>feel, navigate, paint, relief, stiffness, "
       "friction, "
       "damping, roughness, erase</td></tr>"
+      "<tr><td><b>Y Z</b></td><td>measure, pin</td></tr>"
       "<tr><td><b>Ctrl + 0, 8, 9, 1, 2, 3</b></td><td>the desks Scan, Align, Texture, Feel, Paint, "
       "Analyse</td></tr>"
       "<tr><td><b>← →, Page up, down</b></td><td>one frame of a scan back or on, ten</td></tr>"
-      "<tr><td><b>F4</b></td><td>no force, until it is pressed again</td></tr>"
-      "<tr><td><b>F8, F9</b></td><td>fold the column, the drawer</td></tr>"
+      "<tr><td><b>F4</b></td><td>switch the force off, and on again</td></tr>"
+      "<tr><td><b>F8, F9</b></td><td>fold the side panel, the bottom panel</td></tr>"
       "<tr><td><b>[ ]</b></td><td>brush smaller, larger; with Shift its fall-off</td></tr>"
-      "<tr><td><b>C, Alt + click</b></td><td>take what is painted there into the brush</td></tr>"
-      "<tr><td><b>Esc</b></td><td>take back the stroke that is being painted</td></tr>"
+      "<tr><td><b>C, Alt + click</b></td><td>copy the paint at that point to the brush</td></tr>"
+      "<tr><td><b>Esc</b></td><td>cancel the stroke</td></tr>"
       "<tr><td><b>Ctrl + Z, Ctrl + Shift + Z</b></td><td>undo, redo</td></tr>"
-      "<tr><td><b>Ctrl + Shift + P</b></td><td>search in all that can be done</td></tr>"
+      "<tr><td><b>Ctrl + Shift + P</b></td><td>search the actions</td></tr>"
+      "<tr><td><b>Ctrl + E</b></td><td>export or copy a picture</td></tr>"
       "<tr><td><b>R</b></td><td>record the forces, and save them</td></tr></table>");
 }
 
 QString signed_(ViewPreset preset) {
-  QString words = QString::fromUtf8(name(preset).data(), static_cast<int>(name(preset).size()));
+  QString words = shownText(name(preset));
   return words == QStringLiteral("iso") ? QMainWindow::tr("At an angle")
                                         : words.replace('-', QStringLiteral("−"));
 }
 
-// What it is called, its key, and what there is to say.
+// Sets the tooltip: name, key and explanation.
 void describe(QAction& action) {
-  const QString plain = action.text().remove('&').remove(QStringLiteral("…"));
+  const QString words_only = plain(action.text());
   const QString key = action.shortcut().toString(QKeySequence::NativeText);
-  QString words = QStringLiteral("<b>%1</b>").arg(plain);
+  QString words = QStringLiteral("<b>%1</b>").arg(words_only);
   if (!key.isEmpty()) words += QStringLiteral(" (%1)").arg(key);
-  if (action.toolTip() != plain) words += QStringLiteral("<br>") + action.toolTip();
-  if (!plain.isEmpty()) action.setToolTip(words);
+  if (action.toolTip() != words_only) words += QStringLiteral("<br>") + action.toolTip();
+  if (!words_only.isEmpty()) action.setToolTip(words);
+}
+
+QAction* addCheckable(QMenu& menu, const char* name, const QString& words,
+                      const QKeySequence& key = {}, const QString& tip = {}) {
+  QAction* action = named(menu.addAction(words), name, tip);
+  action->setCheckable(true);
+  action->setShortcut(key);
+  return action;
 }
 
 void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
@@ -91,17 +229,14 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   QAction* add = file->addAction(
       tr("&Add object…"), documents, [=] { documents->openDialog(true); },
       Qt::CTRL | Qt::SHIFT | Qt::Key_O);
-  add->setToolTip(tr("A mesh or volume that is felt together with what is open"));
-#ifdef PATINA_HAS_ACQUISITION
+  add->setToolTip(tr("Adds a mesh or volume to the open scene"));
   file->addAction(tr("Open s&can…"), parts.scan, &ScanDesk::openDialog)
       ->setToolTip(tr("A folder of a camera's frames, poses and a probe's stream"));
-#endif
   file->addMenu(parts.recent);
-  file->addAction(tr("Open the toy &dinosaur"), documents, [=] { documents->openAsked({}); });
-  QAction* y_up = file->addAction(tr("&Y is up in mesh files"));
-  y_up->setObjectName(QStringLiteral("y_up"));
-  y_up->setToolTip(tr("Meshes that are opened from now on are turned so that their y is up"));
-  y_up->setCheckable(true);
+  file->addAction(tr("Open the toy &dinosaur"), documents, [=] { documents->openRequested({}); });
+  QAction* y_up =
+      addCheckable(*file, "y_up", tr("&Y is up in mesh files"), {},
+                   tr("Rotates meshes that you open from now on, so that their y axis points up"));
   y_up->setChecked(rememberedUp() == UpAxis::y);
   QObject::connect(y_up, &QAction::toggled, documents,
                    [](bool on) { rememberUp(on ? UpAxis::y : UpAxis::z); });
@@ -110,7 +245,7 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   file->addSeparator();
   QAction* save =
       file->addAction(tr("&Save"), &at.saving, &SaveController::save, QKeySequence::Save);
-  save->setToolTip(tr("Into the workspace that is open, or into a new one"));
+  save->setToolTip(tr("Saves to the open workspace, or to a new one"));
   parts.commands[Command::save] = save;
   parts.commands[Command::save_as] =
       file->addAction(tr("Save workspace &as…"), &at.saving, &SaveController::saveDialog,
@@ -119,25 +254,35 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       file->addAction(tr("Export for &ParaView…"), &at.saving, &SaveController::exportDialog);
   exported->setToolTip(tr("Mesh, surface, field, paint and images, and scene.vtm that opens them"));
   parts.commands[Command::export_scene] = exported;
-  file->addAction(tr("&Export picture…"), &at.view, &ViewController::exportPicture);
-  QAction* record = file->addAction(tr("&Record forces"));
-  record->setObjectName(QStringLiteral("record"));
-  record->setCheckable(true);
-  record->setShortcut(Qt::Key_R);
-  record->setToolTip(tr("Record every tick, then save a CSV table"));
+  SaveController* saving = &at.saving;
+  QAction* mesh =
+      file->addAction(tr("Export &mesh…"), saving, [=] { saving->exportMeshDialog(false); });
+  named(mesh, "export_mesh", tr("The triangles as they were read, as .ply, .obj or .stl in mm"));
+  parts.commands[Command::export_mesh] = mesh;
+  QAction* embossed = file->addAction(tr("Export mesh with relief…"), saving,
+                                      [=] { saving->exportMeshDialog(true); });
+  named(embossed, "export_relief",
+        tr("The surface with its painted relief as a new mesh, as patina emboss"));
+  parts.commands[Command::export_relief] = embossed;
+  file->addAction(tr("&Export picture…"), &at.view, &ViewController::exportPicture,
+                  QKeySequence("Ctrl+E"))
+      ->setToolTip(tr("PNG, TIFF, SVG or PDF at any size and resolution, with any background; or a copy"));
+  QAction* video = file->addAction(tr("Export &video…"), &at.view, &ViewController::exportVideo);
+  named(video, "export_video", tr("Replays a recording over the open scene, as an .ogv file"));
+  parts.commands[Command::export_video] = video;
+  QAction* record = addCheckable(*file, "record", tr("&Record forces"), Qt::Key_R,
+                                 tr("Records every tick, then saves a CSV table"));
   QObject::connect(record, &QAction::triggered, &at.feel, &FeelController::toggleRecording);
   parts.commands[Command::record] = record;
   FeelController* feel = &at.feel;
-  QAction* none = file->addAction(tr("&No force"));
-  none->setObjectName(QStringLiteral("no_force"));
-  none->setCheckable(true);
-  none->setShortcut(Qt::Key_F4);
-  none->setToolTip(tr("The device gives none until this is taken back; the tip follows"));
+  QAction* none = addCheckable(
+      *file, "no_force", tr("&No force"), Qt::Key_F4,
+      tr("Switches the device's force off until you clear this option. The tool still follows the "
+         "hand."));
   QObject::connect(none, &QAction::toggled, feel, [feel](bool on) { feel->setForce(!on); });
-  QAction* held = file->addAction(tr("Force only while a &button is held"));
-  held->setObjectName(QStringLiteral("force_by_button"));
-  held->setCheckable(true);
-  held->setToolTip(tr("Of a device with buttons: a handle that is let go gives none"));
+  QAction* held =
+      addCheckable(*file, "force_by_button", tr("Force only while a &button is held"), {},
+                   tr("For devices with buttons: releasing the handle switches the force off"));
   QObject::connect(held, &QAction::toggled, feel, &FeelController::setNeedsButton);
   file->addSeparator();
   file->addAction(tr("&Quit"), &window, &QWidget::close, QKeySequence::Quit);
@@ -148,25 +293,19 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
 void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
   QMenu* edit = window.menuBar()->addMenu(tr("&Edit"));
   EditController* edits = &at.edits;
-#ifdef PATINA_HAS_ACQUISITION
-  // Each desk's own history: on Align that of the path's place.
+  // Each desk has its own history; on Align that of the pose.
   const auto there = [desks = &at.desks, align = parts.align] {
     return desks->desk() == Desk::align ? align : nullptr;
   };
-#endif
   QAction* undo = edit->addAction(
       tr("&Undo"), edits,
       [=] {
-#ifdef PATINA_HAS_ACQUISITION
         if (AlignDesk* align = there()) return align->undo();
-#endif
         edits->thread().undo();
       },
       QKeySequence::Undo);
   QAction* redo = edit->addAction(tr("&Redo"), edits, [=] {
-#ifdef PATINA_HAS_ACQUISITION
     if (AlignDesk* align = there()) return align->redo();
-#endif
     edits->thread().redo();
   });
   redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
@@ -179,7 +318,7 @@ void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   const auto add = [&](const QString& words, const QList<QKeySequence>& keys, auto act) {
     edit->addAction(words, paint, act)->setShortcuts(keys);
   };
-  // On keyboards where Shift makes a brace of a bracket the key is the brace.
+  // Some keyboards send a brace for Shift and a bracket.
   add(tr("Smaller brush"), {Qt::Key_BracketLeft}, [=] { paint->resizeBrush(1 / 1.15); });
   add(tr("Larger brush"), {Qt::Key_BracketRight}, [=] { paint->resizeBrush(1.15); });
   add(tr("Softer brush"), {QKeySequence("Shift+["), Qt::Key_BraceLeft},
@@ -211,10 +350,7 @@ void addLayers(QMenu& menu, DisplayPanel* display) {
 }
 
 void addClip(QMenu& menu, QCheckBox& box) {
-  QAction* clip = menu.addAction(QMainWindow::tr("Show clip plane"));
-  clip->setObjectName(QStringLiteral("show_clip"));
-  clip->setCheckable(true);
-  clip->setShortcut(QKeySequence("Shift+S"));
+  QAction* clip = addCheckable(menu, "show_clip", tr("Show clip plane"), QKeySequence("Shift+S"));
   QObject::connect(clip, &QAction::toggled, &box, &QCheckBox::setChecked);
   QObject::connect(&box, &QCheckBox::toggled, clip, &QAction::setChecked);
 }
@@ -225,44 +361,35 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
                   Qt::Key_Space);
   menu->addSeparator();
   ViewController* view = &at.view;
-  bar.addAction(menu->addAction(
-      tr("&Fit"), view, [=] { view->view().fit(); }, Qt::Key_F));
-#ifdef PATINA_HAS_ACQUISITION
-  QObject::connect(menu->actions().back(), &QAction::triggered, parts.scan->cells(),
-                   &ScanCells::fit);
-  QObject::connect(menu->actions().back(), &QAction::triggered, parts.texture, &TextureDesk::fit);
-  QObject::connect(menu->actions().back(), &QAction::triggered, parts.align->cells(),
-                   &AlignCells::fit);
-#endif
+  ScanCentralViews* scan = parts.scan->centralViews();
+  TextureDesk* texture = parts.texture;
+  const auto fit = [=, align = parts.align->centralViews()] {
+    view->view().fit();
+    scan->fit();
+    texture->fit();
+    align->fit();
+  };
+  bar.addAction(menu->addAction(tr("&Fit"), view, fit, Qt::Key_F));
   QMenu* camera = menu->addMenu(tr("&Camera"));
   int digit = Qt::Key_1;
-  for (const ViewPreset preset : allViews())
-    camera
-        ->addAction(
-            signed_(preset), view, [=] { view->view().setView(preset); }, digit++)
-        ->setObjectName(QStringLiteral("view_") +
-                        QString::fromStdString(std::string(name(preset))));
-#ifdef PATINA_HAS_ACQUISITION
-  for (const ViewPreset preset : allViews())
-    QObject::connect(camera->actions()[static_cast<int>(preset)], &QAction::triggered, parts.scan,
-                     [scan = parts.scan, texture = parts.texture, preset] {
-                       scan->cells()->setView(preset);
-                       texture->setView(preset);
-                     });
-#endif
+  for (const ViewPreset preset : allViews()) {
+    const auto turn = [=] {
+      view->view().setView(preset);
+      scan->setView(preset);
+      texture->setView(preset);
+    };
+    camera->addAction(signed_(preset), view, turn, digit++)
+        ->setObjectName(QStringLiteral("view_") + shownText(name(preset)));
+  }
   camera->addSeparator();
-  QAction* parallel = camera->addAction(tr("Orthographic"));
-  parallel->setObjectName(QStringLiteral("orthographic"));
-  parallel->setCheckable(true);
-  parallel->setShortcut(Qt::Key_O);
-  parallel->setToolTip(tr("Without perspective: what is far is as large as what is near"));
+  QAction* parallel = addCheckable(*camera, "orthographic", tr("Orthographic"), Qt::Key_O,
+                                   tr("Parallel projection: size does not depend on distance"));
   QObject::connect(parallel, &QAction::toggled, view, [view](bool on) {
     setParallel(*view->view().renderer().GetActiveCamera(), on);
   });
-  QAction* hand = camera->addAction(tr("Moved by a SpaceMouse"));
-  hand->setObjectName(QStringLiteral("camera_hand"));
-  hand->setCheckable(true);
-  hand->setToolTip(tr("What you look at goes with its cap, whatever else feels"));
+  QAction* hand = addCheckable(
+      *camera, "camera_hand", tr("Moved by a SpaceMouse"), {},
+      tr("The scene follows the cap of a SpaceMouse, whichever device gives the force"));
   QObject::connect(hand, &QAction::toggled, view, [view](bool on) {
     view->setCameraHand(on ? std::make_unique<CameraHand>() : nullptr);
   });
@@ -272,30 +399,27 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   addClip(*menu, parts.display->clip());
   menu->addSeparator();
   menu->addActions(at.desks.actions());
-#ifdef PATINA_HAS_ACQUISITION
-  QAction* guide = menu->addAction(tr("Guide from a scan to a feel"));
-  guide->setObjectName(QStringLiteral("guide"));
-  guide->setToolTip(tr("A line over Scan, Align and Texture: what is done, and what is next"));
-  guide->setCheckable(true);
+  QAction* guide =
+      addCheckable(*menu, "guide", tr("Guide from a scan to a feel"), {},
+                   tr("A line over Scan, Align and Texture: finished steps, and the next one"));
   guide->setChecked(parts.guide->isOpen());
   QObject::connect(guide, &QAction::toggled, parts.guide, &GuideStrip::setOpen);
   QObject::connect(parts.guide, &GuideStrip::openChanged, guide, &QAction::setChecked);
-#endif
   DeskController* desks = &at.desks;
-  FoldingTabs *column = parts.column, *drawer = parts.drawer;
+  FoldingTabs *column = parts.side_panel, *bottom_panel = parts.bottom_panel;
   menu->addAction(
-      tr("Fold the column, or open it"), desks, [=] { desks->foldColumn(!column->folded()); },
+      tr("Folds or opens the side panel"), desks, [=] { desks->foldSidePanel(!column->folded()); },
       Qt::Key_F8);
   menu->addAction(
-      tr("Fold the drawer, or open it"), desks, [=] { desks->foldDrawer(!drawer->folded()); },
-      Qt::Key_F9);
+      tr("Folds or opens the bottom panel"), desks,
+      [=] { desks->foldBottomPanel(!bottom_panel->folded()); }, Qt::Key_F9);
   bar.addSeparator();
   bar.addAction(parts.commands[Command::record]);
   bar.widgetForAction(parts.commands[Command::record])
       ->setObjectName(QStringLiteral("record_button"));
 }
 
-// Longer than a small screen is high: it is scrolled.
+// Scrolls, because the list is higher than a small screen.
 void showShortcuts(QMainWindow* window) {
   auto* dialog = new QDialog(window);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -319,9 +443,9 @@ void addHelpMenu(QMainWindow* window) {
     box->open();
   };
   help->addAction(tr("&User guide"), window, [window] { showGuide(*window); })
-      ->setToolTip(tr("What each desk does, and how"));
+      ->setToolTip(tr("Describes each desk"));
   help->addAction(
-      tr("&Search actions…"), window, [window] { searchActions(*window); },
+      tr("&Search actions…"), window, [window] { (new ActionSearch(*window))->open(); },
       Qt::CTRL | Qt::SHIFT | Qt::Key_P);
   help->addAction(
       tr("&Mouse and keys"), window, [window] { showShortcuts(window); }, Qt::Key_F1);
@@ -335,27 +459,28 @@ void addHelpMenu(QMainWindow* window) {
 
 } // namespace
 
-void addMenus(QMainWindow& window, WindowParts& parts, const Controllers& controllers) {
-  QToolBar* bar = window.addToolBar(tr("View"));
+void MainWindow::addMenus() {
+  QToolBar* bar = addToolBar(tr("View"));
   bar->setObjectName(QStringLiteral("tools"));
   bar->setMovable(false);
   bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
-  dress(*bar,
-        QStringLiteral(
-            "QToolBar { border: none; border-bottom: 1px solid @line; padding: 1px 6px; spacing: "
-            "2px; }"
-            "QToolButton { padding: 3px 8px; border: 1px solid transparent; border-radius: 4px; }"
-            "QToolButton:hover { background: @hover; }"
-            "QToolButton:checked { background: @strong; color: white; }"
-            "QToolButton#record_button:checked { background: @recording; }"
-            "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
-  bar->addActions(controllers.desks.actions());
+  applyStyleSheet(
+      *bar,
+      QStringLiteral(
+          "QToolBar { border: none; border-bottom: 1px solid @line; padding: 1px 6px; spacing: "
+          "2px; }"
+          "QToolButton { padding: 3px 8px; border: 1px solid transparent; border-radius: 4px; }"
+          "QToolButton:hover { background: @hover; }"
+          "QToolButton:checked { background: @strong; color: white; }"
+          "QToolButton#record_button:checked { background: @recording; }"
+          "QToolButton::menu-indicator { subcontrol-position: bottom right; }"));
+  bar->addActions(desks_.actions());
   bar->addSeparator();
-  addFileMenu(window, parts, controllers, *bar);
-  addEditMenu(window, parts, controllers, *bar);
-  addViewMenu(window, parts, controllers, *bar);
-  addHelpMenu(&window);
-  for (QAction* action : window.findChildren<QAction*>()) describe(*action);
+  addFileMenu(*this, parts_, controllers(), *bar);
+  addEditMenu(*this, parts_, controllers(), *bar);
+  addViewMenu(*this, parts_, controllers(), *bar);
+  addHelpMenu(this);
+  for (QAction* action : findChildren<QAction*>()) describe(*action);
 }
 
 } // namespace patina

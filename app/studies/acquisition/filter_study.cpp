@@ -1,10 +1,11 @@
-#include "app/studies/acquisition/filter_study.h"
+#include "app/studies/framework/studies.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "acquisition/filtering/fused_path.h"
+#include "acquisition/simulation/hand_gestures.h"
 #include "acquisition/simulation/path_error.h"
 #include "acquisition/simulation/simulated_streams.h"
 #include "acquisition/simulation/simulated_surface.h"
@@ -27,7 +28,7 @@ struct Scan {
   std::vector<CameraPose> poses;
   std::vector<ProbeSample> samples;
   std::vector<double> times;
-  std::vector<PathSample> truth; // at the times
+  std::vector<PathSample> truth; // at the same times
 };
 
 Scan scanOf(std::uint32_t seed, const Course& course) {
@@ -47,7 +48,8 @@ Scan scanOf(std::uint32_t seed, const Course& course) {
   return scan;
 }
 
-// What is above `frequency`, without a shift in time: Butterworth's second order, both ways.
+// Zero-phase high-pass above `frequency`: a second-order Butterworth filter, forwards and
+// backwards.
 std::vector<double> above(std::vector<double> values, double frequency, double rate) {
   const double w = std::tan(kPi * frequency / rate), a = 1 / (1 + std::numbers::sqrt2 * w + w * w);
   const double b1 = 2 * a * (w * w - 1), b2 = a * (1 - std::numbers::sqrt2 * w + w * w);
@@ -63,7 +65,7 @@ std::vector<double> above(std::vector<double> values, double frequency, double r
   return values;
 }
 
-// Of the height above 10 Hz while touching, relative.
+// Relative error of the height above 10 Hz in contact.
 double textureError(const Scan& scan, const std::vector<PathSample>& path) {
   std::vector<double> heights, errors;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -80,7 +82,7 @@ double textureError(const Scan& scan, const std::vector<PathSample>& path) {
   return std::sqrt(squares / all);
 }
 
-// The tip as the camera saw it, at the times of its frames.
+// Error of the camera's tip at the times of its frames.
 PathError rawError(const Scan& scan) {
   std::vector<PathSample> raw;
   std::vector<double> times;
@@ -124,7 +126,7 @@ WorkPrecisionTable paths(const Course& course, const StudyOptions& options, Prog
   for (std::uint32_t seed = 1; seed <= seeds; ++seed) scans.push_back(scanOf(seed, course));
   double raw = 0, seconds = 0;
   WorkPrecisionRow camera;
-  camera.knobs = {{"filter", "raw camera"}};
+  camera.settings = {{"filter", "raw camera"}};
   for (const Scan& scan : scans) {
     const PathError error = rawError(scan);
     raw += error.rms * error.rms / seeds;
@@ -155,7 +157,7 @@ WorkPrecisionTable paths(const Course& course, const StudyOptions& options, Prog
       texture += textureError(scan, path) / seeds;
     }
     WorkPrecisionRow row;
-    row.knobs = {{"filter", method.name}};
+    row.settings = {{"filter", method.name}};
     row.error = 1e3 * std::sqrt(sum.rms);
     row.error_max = 1e3 * sum.most;
     row.ns = 1e9 * taken / seconds;
@@ -163,6 +165,50 @@ WorkPrecisionTable paths(const Course& course, const StudyOptions& options, Prog
                 {"nees", sum.nees},
                 {"texture above 10 Hz", texture},
                 {"of real time [%]", 100 * taken / seconds}};
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+// Hands beside strokes: the fused path with accelerometers, and its error with a gyroscope too.
+WorkPrecisionTable hands(const StudyOptions& options, Progress& progress) {
+  WorkPrecisionTable table =
+      filterTable("Tip of hands that move freely for 10 s (A06), rms and max", "mm");
+  const std::uint32_t seeds = options.thorough ? 10 : 1;
+  for (const HandGesture kind : kHandGestures) {
+    progress.throwIfCancelled();
+    WorkPrecisionRow row;
+    row.settings = {{"hand", nameOf(kind)}};
+    double squares = 0, nees = 0, velocity = 0, turned = 0, taken = 0;
+    for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+      Scan scan;
+      scan.hand = gesture(kind, seed);
+      SimulatedCamera camera;
+      camera.sigma_angle = 3e-3;
+      scan.poses = simulateCamera(scan.hand, scan.probe, camera, seed);
+      scan.samples = simulateProbe(scan.hand, scan.probe, {}, seed + 100);
+      for (const ProbeSample& sample : scan.samples) scan.times.push_back(sample.t);
+      scan.truth = truthAt(scan.hand, Pose::Identity(), scan.times);
+      const double begin = threadSeconds();
+      const PathError fused = errorOf(pathBy(kMethods[4], scan), scan.truth);
+      taken += (threadSeconds() - begin) / scan.hand.seconds() / seeds;
+      const PathError simple = errorOf(pathBy(kMethods[1], scan), scan.truth);
+      const PathError full = errorOf(fusePath(scan.poses, scan.samples, scan.probe, {},
+                                              simulateRates(scan.hand, scan.probe, {}, seed + 200))
+                                         .path,
+                                     scan.truth);
+      squares += fused.rms * fused.rms / seeds;
+      nees += fused.nees / seeds;
+      velocity += simple.rms * simple.rms / seeds;
+      turned += full.rms * full.rms / seeds;
+      row.error_max = std::max(row.error_max, 1e3 * fused.most);
+    }
+    row.error = 1e3 * std::sqrt(squares);
+    row.ns = 1e9 * taken;
+    row.more = {{"velocity", 1e3 * std::sqrt(velocity)},
+                {"with gyroscope", 1e3 * std::sqrt(turned)},
+                {"nees", nees},
+                {"of real time [%]", 100 * taken}};
     table.rows.push_back(row);
   }
   return table;
@@ -177,9 +223,9 @@ std::vector<WorkPrecisionTable> filterStudy(const StudyOptions& options, Progres
   return tablesOf({{0, "paths", course(false, 20)},
                    {0.25, "paths with faults", course(true, 20)},
                    {0.5, "five minutes", course(true, 300)},
+                   {0.65, "hands", [&] { return hands(options, progress); }},
                    {0.7, "heights", [&] { return heightTable(options, progress); }},
-                   {0.8, "stiffness", [&] { return stiffnessTable(options, progress); }},
-                   {0.95, "gains", gainTable}},
+                   {0.8, "stiffness", [&] { return stiffnessTable(options, progress); }}},
                   progress);
 }
 

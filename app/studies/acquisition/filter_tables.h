@@ -1,8 +1,8 @@
-// The tables of the filter study, and what they have in common.
+// Tables of the filter study and their common header.
 #pragma once
 
-#include "app/studies/query_timing.h"
-#include "app/studies/study.h"
+#include "app/studies/framework/query_timing.h"
+#include "app/studies/framework/study.h"
 
 namespace patina {
 
@@ -10,7 +10,6 @@ inline WorkPrecisionTable filterTable(const std::string& title, const std::strin
   return {"filter", title, unit, {}, std::nullopt, std::nullopt};
 }
 
-WorkPrecisionTable gainTable();
 WorkPrecisionTable heightTable(const StudyOptions& options, Progress& progress);
 WorkPrecisionTable stiffnessTable(const StudyOptions& options, Progress& progress);
 

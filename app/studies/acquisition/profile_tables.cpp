@@ -7,8 +7,8 @@
 
 #include "acquisition/profile/compliance.h"
 #include "acquisition/profile/height_profile.h"
-#include "acquisition/scan_samples.h"
 #include "acquisition/simulation/simulated_surface.h"
+#include "acquisition/values/scan_samples.h"
 
 namespace patina {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 struct Press {
-  double stiffness, noise; // [N/m], of the displacement [m]
+  double stiffness, noise; // [N/m]; displacement [m]
   int count;
 };
 
@@ -47,7 +47,7 @@ WorkPrecisionTable heightTable(const StudyOptions& options, Progress& progress) 
   const std::uint32_t seeds = options.quick ? 2 : options.thorough ? 40 : 6;
   for (const double speed : {0.02, 0.04, 0.08}) {
     WorkPrecisionRow row;
-    row.knobs = {{"speed [mm/s]", 1e3 * speed}};
+    row.settings = {{"speed [mm/s]", 1e3 * speed}};
     double length = 0, taken = 0, seconds = 0;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
       progress.throwIfCancelled();
@@ -56,7 +56,7 @@ WorkPrecisionTable heightTable(const StudyOptions& options, Progress& progress) 
                     probe.acceleration_step, probe.acceleration_noise,
                     probe.acceleration_step * seed / seeds, seed);
       const double begin = threadSeconds();
-      const HeightProfile profile = heightAlong(reading.samples, sensor);
+      const HeightProfile profile = estimateProfile(reading.samples, sensor);
       taken += threadSeconds() - begin;
       seconds += reading.samples.back().t;
       double squares = 0, all = 0;
@@ -89,7 +89,7 @@ WorkPrecisionTable stiffnessTable(const StudyOptions& options, Progress& progres
       if (count > 3 && k != 1000) continue;
       progress.throwIfCancelled();
       WorkPrecisionRow row;
-      row.knobs = {{"stiffness [N/m]", k}, {"presses", count}};
+      row.settings = {{"stiffness [N/m]", k}, {"presses", count}};
       double mean = 0, squares = 0, stated = 0, taken = 0;
       for (std::uint32_t seed = 0; seed < seeds; ++seed) {
         const std::vector<PressSample> samples = presses({k, 0.3e-3, count}, probe, seed);

@@ -22,7 +22,7 @@ Vec3 drawNormal(std::mt19937& random) {
   return {x, y, z};
 }
 
-// Away from the face's edges: on a ridge all noise leads away from the mesh.
+// Point away from the face's edges, because on a ridge all noise points away from the mesh.
 Vec3 within(const TriangleMesh& mesh, std::size_t face, std::mt19937& random) {
   std::uniform_real_distribution<double> share(0.2, 1);
   const double a = share(random), b = share(random), c = share(random);
@@ -66,7 +66,7 @@ RegistrationCase drawCase(const SurfaceTarget& target, const RegistrationSetting
 
 ScannedCase scanCase(const TriangleMesh& mesh, double seconds, unsigned seed, Progress& progress) {
   constexpr double kRough = 25e-6; // [m]
-  SimulatedHand hand = strokesOver(mesh, seed, seconds, 0.05);
+  SimulatedHand hand = scanPathsOver(mesh, seed, seconds, 0.05);
   hand.relief = [shape = hand.relief, rough = roughSurface(seed, kRough)](const Vec2& place) {
     return shape(place) + rough(place);
   };

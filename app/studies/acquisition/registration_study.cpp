@@ -1,14 +1,15 @@
-#include "app/studies/acquisition/registration_study.h"
+#include "app/studies/framework/studies.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "acquisition/registration/closest_point_loop.h"
+#include "acquisition/registration/iterated_closest_points.h"
 #include "acquisition/registration/register_path.h"
 #include "app/studies/acquisition/registration_cases.h"
-#include "app/studies/acquisition/registration_trust.h"
-#include "app/studies/query_timing.h"
+#include "app/studies/acquisition/registration_consistency.h"
+#include "app/studies/acquisition/stroke_trials.h"
+#include "app/studies/framework/query_timing.h"
 #include "core/percentiles.h"
 #include "field/surface/models.h"
 
@@ -25,23 +26,21 @@ struct Found {
 struct Method {
   const char* name;
   bool loop;
-  bool literal = false; // the loop's fit as the paper words it
-  bool plain = false;   // no search, all points count
+  bool literal = false; // the loop's fit as the paper describes it
 };
 constexpr Method kOurs{"ours", false}, kLoop{"closest points", true},
-    kLiteral{"closest points, 4x4", true, true}, kPlain{"plain Gauss-Newton", false, false, true};
+    kLiteral{"closest points, 4x4", true, true};
 
 Found place(const Method& method, const SurfaceTarget& target, const RegistrationCase& given,
             double noise) {
   if (method.loop) {
-    LoopOptions options;
-    options.literal = method.literal;
-    const LoopFit found = closestPointLoop(target, given.path, given.start, options);
+    IcpOptions options;
+    options.affine = method.literal;
+    const IcpResult found = iteratedClosestPoints(target, given.path, given.start, options);
     return {found.mesh_from_path, found.iterations};
   }
   RegistrationOptions options;
   options.noise = noise;
-  options.robust = options.search = !method.plain;
   Progress progress;
   const Registration found = registerPath(target, given.path, given.start, options, progress);
   return {found.mesh_from_path, found.iterations};
@@ -87,18 +86,18 @@ unsigned trialCount(const StudyOptions& options) {
 
 WorkPrecisionTable methods(const SurfaceTarget& target, const StudyOptions& options,
                            Progress& progress) {
-  constexpr double kFound = 0.05e-3; // [m], where there is no noise
+  constexpr double kFound = 0.05e-3; // [m], without noise
   const unsigned count = trialCount(options);
   WorkPrecisionTable table =
       tableOf("300 points on a dinosaur of 100 mm (A10): true error, median and worst of " +
                   std::to_string(count) +
                   "; found is what errs by less than the noise, or 0.05 mm without any",
               "mm");
-  trialsOf(kOurs, target, {}, 1); // brings the mesh to the cache
+  trialsOf(kOurs, target, {}, 1); // warms the cache
   for (const auto& [degrees, millimetres] : {std::pair{5, 3}, {15, 10}, {60, 40}})
     for (const double outliers : {0., 0.2})
       for (const double noise : {0., 0.1e-3, 0.5e-3})
-        for (const Method& method : {kOurs, kLoop, kLiteral, kPlain}) {
+        for (const Method& method : {kOurs, kLoop, kLiteral}) {
           progress.throwIfCancelled();
           const RegistrationSetting setting{.turn = kDegree * degrees,
                                             .shift = 1e-3 * millimetres,
@@ -106,11 +105,11 @@ WorkPrecisionTable methods(const SurfaceTarget& target, const StudyOptions& opti
                                             .outliers = outliers};
           const Trials trials = trialsOf(method, target, setting, count);
           WorkPrecisionRow row = rowOf(trials, percentiles(trials.errors).p50);
-          row.knobs = {{"method", method.name},
-                       {"turn [deg]", degrees},
-                       {"shift [mm]", millimetres},
-                       {"outliers [%]", 100 * outliers},
-                       {"noise [mm]", 1e3 * noise}};
+          row.settings = {{"method", method.name},
+                          {"turn [deg]", degrees},
+                          {"shift [mm]", millimetres},
+                          {"outliers [%]", 100 * outliers},
+                          {"noise [mm]", 1e3 * noise}};
           const auto found =
               std::count_if(trials.errors.begin(), trials.errors.end(),
                             [&](double error) { return error < std::max(noise, kFound); });
@@ -129,14 +128,14 @@ Pose afterSteps(int iterations, const SurfaceTarget& target, const RegistrationC
 
 Pose afterRounds(int iterations, const SurfaceTarget& target, const RegistrationCase& given,
                  const Pose& start) {
-  LoopOptions options;
+  IcpOptions options;
   options.iterations = iterations;
-  options.still = 0;
-  return closestPointLoop(target, given.path, start, options).mesh_from_path;
+  options.tolerance = 0;
+  return iteratedClosestPoints(target, given.path, start, options).mesh_from_path;
 }
 
-// Each pair of an error and the one an iteration later tells of the order. Hardly a point leaves
-// its face, so that the surface is smooth where it counts.
+// Estimates the order from pairs of an error and its successor. Few points change their face, so
+// the surface is locally smooth.
 template <class After>
 WorkPrecisionTable convergence(const std::string& title, const std::vector<int>& iterations,
                                double order, const After& after, const StudyOptions& options,
@@ -166,7 +165,7 @@ WorkPrecisionTable convergence(const std::string& title, const std::vector<int>&
     }
     trials.iterations = many;
     WorkPrecisionRow row = rowOf(trials, percentiles(trials.errors).p50);
-    row.knobs = {{"iterations", many}};
+    row.settings = {{"iterations", many}};
     row.more = {{"one more leaves", percentiles(left).p50}};
     table.rows.push_back(row);
   }
@@ -187,8 +186,8 @@ WorkPrecisionTable numbers(const SurfaceTarget& target, const StudyOptions& opti
           kOurs, target, {.points = points, .turn = 5 * kDegree, .shift = 3e-3, .noise = noise},
           5 * trialCount(options));
       WorkPrecisionRow row = rowOf(trials, trials.rms());
-      row.knobs = {{"noise [mm]", 1e3 * noise}, {"points", points}};
-      // Six unknowns from one distance a point.
+      row.settings = {{"noise [mm]", 1e3 * noise}, {"points", points}};
+      // Six parameters from one distance per point.
       row.more.emplace_back("of noise sqrt(6/n)", trials.rms() / noise * std::sqrt(points / 6.));
       table.rows.push_back(row);
       if (noise < 0.1e-3) order.add(points, row.error);
@@ -213,7 +212,8 @@ std::vector<WorkPrecisionTable> registrationStudy(const StudyOptions& options, P
                              afterRounds, options, progress);
         }},
        {0.9, "number of points", [&] { return numbers(target, options, progress); }},
-       {0.95, "simulated scans", [&] { return trustTable(options, progress); }}},
+       {0.95, "simulated scans", [&] { return consistencyTable(options, progress); }},
+       {0.98, "next strokes", [&] { return strokeTable(options, progress); }}},
       progress);
 }
 

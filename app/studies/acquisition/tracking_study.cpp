@@ -1,21 +1,20 @@
-#include "app/studies/acquisition/tracking_study.h"
+#include "app/studies/framework/studies.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <random>
 
+#include "acquisition/calibration/calibrate_rig.h"
 #include "acquisition/calibration/pivot.h"
 #include "acquisition/simulation/simulated_frames.h"
 #include "acquisition/simulation/simulated_pivot.h"
+#include "acquisition/simulation/simulated_rig.h"
 #include "acquisition/tracking/lens.h"
+#include "acquisition/tracking/marker_residual.h"
 #include "acquisition/tracking/rig_pose.h"
-#include "acquisition/vision/vision.h"
-#include "acquisition/vision_library.h"
-#include "app/studies/query_timing.h"
+#include "app/studies/framework/query_timing.h"
 #include "core/decompose.h"
-#include "core/error.h"
 
 namespace patina {
 namespace {
@@ -23,34 +22,14 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
 const Vec3 kTip(0, 0, -0.12);
-constexpr double kEdge = 0.04; // of the cube [m]
+constexpr double kEdge = 0.04; // edge of the cube [m]
 
 struct Setting {
   std::string family = "apriltag_36h11";
-  bool large = false;    // 1080p in place of 640 x 480
+  bool large = false;    // 1080p instead of 640 x 480
   double distance = 0.4; // [m]
   FrameLook look;
-  std::optional<VisionRefinement> opencv = {}; // in place of ours
 };
-
-// As ours would hand them on, each as exact as any other.
-std::vector<SeenMarker> foundByOpenCv(const GreyFrame& image, const Setting& setting,
-                                      const Camera& camera) {
-  std::vector<VisionMarker> found;
-  if (const std::string cause =
-          visionLibrary().markers(image, setting.family, *setting.opencv, found);
-      !cause.empty())
-    throw Error(cause);
-  std::vector<SeenMarker> seen;
-  for (const VisionMarker& one : found) {
-    if (one.id > 4) continue; // not on the cube
-    seen.push_back({setting.family, one.id, 0, {}, 0});
-    for (std::size_t i = 0; i < 4; ++i)
-      seen.back().corner[i] = {one.corner[i], straightened(camera, one.corner[i]).value(),
-                               10 * Eigen::Matrix2d::Identity()};
-  }
-  return seen;
-}
 
 Camera cameraOf(const Setting& setting) {
   const std::array<double, 14> lens{-0.08, 0.03, 3e-4, -2e-4, 0};
@@ -58,7 +37,7 @@ Camera cameraOf(const Setting& setting) {
                        : Camera{640, 480, 600, 602, 322, 238, lens};
 }
 
-// The cube's top looks at the camera, leaning by up to 35 degrees.
+// The cube's top faces the camera, tilted by up to 35 degrees.
 Pose somePose(std::mt19937& random, double distance) {
   std::uniform_real_distribution<double> unit(-1, 1);
   const double x = unit(random), y = unit(random), z = unit(random), a = unit(random),
@@ -93,11 +72,10 @@ WorkPrecisionRow measured(const Setting& setting, int frames) {
     double least = INFINITY;
     std::vector<SeenMarker> markers;
     SeenRig seen;
-    for (int pass = 0; pass < (setting.opencv ? 1 : 3); ++pass) {
+    for (int pass = 0; pass < 3; ++pass) {
       const double begin = threadSeconds();
-      markers = setting.opencv ? foundByOpenCv(image, setting, camera)
-                               : findMarkers(image, books, &camera);
-      seen = poseOf(markers, rig, camera, nullptr, setting.opencv ? nullptr : &image);
+      markers = findMarkers(image, books, &camera);
+      seen = poseOf(markers, rig, camera, nullptr, &image);
       least = std::min(least, threadSeconds() - begin);
     }
     seconds += least;
@@ -141,7 +119,7 @@ WorkPrecisionTable over(const std::string& title, const std::vector<Variation>& 
     progress.throwIfCancelled();
     const int frames = options.quick ? 3 : (options.thorough ? 200 : 20);
     WorkPrecisionRow row = measured(variation.setting, frames);
-    row.knobs = {{variation.knob, variation.value}};
+    row.settings = {{variation.knob, variation.value}};
     table.rows.push_back(row);
   }
   return table;
@@ -160,27 +138,6 @@ std::vector<Variation> cameras() {
   return all;
 }
 
-// Beside OpenCV's own search with each of its refinements, of which the last is AprilTag 2.
-std::vector<Variation> searches() {
-  constexpr std::array<std::pair<const char*, VisionRefinement>, 4> kRefinements{
-      {{"OpenCV", VisionRefinement::none},
-       {"OpenCV subpix", VisionRefinement::subpix},
-       {"OpenCV contour", VisionRefinement::contour},
-       {"OpenCV apriltag", VisionRefinement::apriltag}}};
-  std::vector<Variation> all;
-  for (const bool large : {false, true}) {
-    Setting setting;
-    setting.large = large;
-    const std::string picture = large ? " 1080p" : " 640x480";
-    all.push_back({"search, picture", "ours" + picture, setting});
-    for (const auto& [name, refinement] : kRefinements) {
-      setting.opencv = refinement;
-      all.push_back({"search, picture", name + picture, setting});
-    }
-  }
-  return all;
-}
-
 template <class Change>
 std::vector<Variation> varied(const std::string& knob, const std::vector<double>& values,
                               const Change& change) {
@@ -193,7 +150,7 @@ std::vector<Variation> varied(const std::string& knob, const std::vector<double>
   return all;
 }
 
-// Median over seeds, as outliers of the fit would be seen in the largest.
+// The error is the median over seeds; the maximum beside it shows outliers of the fit.
 WorkPrecisionTable tips(const StudyOptions& options) {
   WorkPrecisionTable table = tableOf(
       "Tip by turning about it (A05): 200 poses in a cone, 0.3 mm, 0.3 deg; median and max", "mm");
@@ -216,12 +173,121 @@ WorkPrecisionTable tips(const StudyOptions& options) {
     if (errors.empty()) continue;
     std::sort(errors.begin(), errors.end());
     WorkPrecisionRow row;
-    row.knobs = {{"outliers", outliers}};
+    row.settings = {{"outliers", outliers}};
     row.error = errors[errors.size() / 2];
     row.error_max = errors.back();
     row.ns = 1e9 * seconds / seeds;
     row.more = {{"nees", stated}};
     table.rows.push_back(row);
+  }
+  return table;
+}
+
+// A rig that was made by hand and is calibrated from corners with errors of 0.04 px. The error is
+// that of the tip beside a marker; "before" is that of the tip in the frames by the nominal rig.
+struct RigTrial {
+  double error = 0, before = 0; // [mm]
+  double size = 0;              // largest error [%]
+  double nees = 0, seconds = 0;
+  bool found = false;
+};
+
+RigTrial calibrated(const HandmadeRig& made, double seconds, std::uint32_t seed) {
+  constexpr double kRate = 15, kCorner = 0.04; // [Hz], [px]
+  const Camera camera = cameraOf({});
+  const std::vector<RigMarker> nominal = markerCube("4x4_50", 4, kEdge),
+                               real = madeByHand(nominal, made, seed);
+  WavedProbe probe;
+  probe.seconds = seconds;
+  probe.seed = seed;
+  std::mt19937 random(seed);
+  std::vector<RigView> views;
+  RigTrial trial;
+  double poses = 0;
+  for (int i = 0; i < seconds * kRate; ++i) {
+    const Pose known = wavedPose(probe, i / kRate);
+    views.push_back({i / kRate, projectedMarkers(real, known, camera, kCorner, random)});
+    const SeenRig seen = poseOf(views.back().markers, nominal, camera);
+    if (seen.verdict != RigVerdict::seen) continue;
+    trial.before += (seen.camera_from_probe * probe.tip - known * probe.tip).squaredNorm();
+    poses += 1;
+  }
+  trial.before = 1e3 * std::sqrt(trial.before / std::max(1., poses));
+  RigFitOptions options;
+  options.measured = {{0, real[0].size}};
+  options.calliper = 1e-6; // the size is exact
+  const double begin = threadSeconds();
+  const RigFit fit = fitRig(views, nominal, camera, options, "study");
+  trial.seconds = threadSeconds() - begin;
+  if (!fit.tip || fit.markers[0].views == 0) return trial;
+  trial.found = true;
+  const Pose &first = fit.markers[0].marker.probe_from_marker,
+             align = first * real[0].probe_from_marker.inverse();
+  const Vec3 off = fit.tip->place - align * probe.tip;
+  trial.error = 1e3 * off.norm();
+  for (std::size_t i = 0; i < real.size(); ++i)
+    trial.size =
+        std::max(trial.size, 100 * std::abs(fit.markers[i].marker.size / real[i].size - 1));
+  // The tip beside the first marker: less the marker's shift and turn.
+  MatX beside = MatX::Zero(3, fit.covariance.rows());
+  beside.leftCols<3>() = -Eigen::Matrix3d::Identity();
+  beside.middleCols<3>(3) = crossMatrix(fit.tip->place - first.translation());
+  beside.rightCols<3>().setIdentity();
+  const MatX covariance = beside * fit.covariance * beside.transpose();
+  trial.nees = off.dot(SymmetricSolver(covariance).solve(off)) / 3;
+  return trial;
+}
+
+WorkPrecisionRow trials(const HandmadeRig& made, double seconds, const StudyOptions& options,
+                        Progress& progress) {
+  const std::uint32_t seeds = options.quick ? 2 : (options.thorough ? 200 : 20);
+  std::vector<double> errors;
+  double before = 0, size = 0, nees = 0, spent = 0, found = 0;
+  for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+    progress.throwIfCancelled();
+    const RigTrial trial = calibrated(made, seconds, seed);
+    spent += trial.seconds;
+    before += trial.before / seeds;
+    if (!trial.found) continue;
+    found += 1;
+    errors.push_back(trial.error);
+    size = std::max(size, trial.size);
+    nees += trial.nees;
+  }
+  std::sort(errors.begin(), errors.end());
+  WorkPrecisionRow row;
+  if (!errors.empty()) {
+    row.error = errors[errors.size() / 2];
+    row.error_max = errors.back();
+  }
+  row.ns = 1e9 * spent / seeds;
+  row.more = {{"before [mm]", before},
+              {"sizes, max [%]", size},
+              {"found [%]", 100 * found / seeds},
+              {"nees", nees / std::max(found, 1.)}};
+  return row;
+}
+
+WorkPrecisionTable rigs(const StudyOptions& options, Progress& progress) {
+  WorkPrecisionTable table = tableOf(
+      "A rig made by hand (A31), calibrated from 60 s; tip beside a marker, median and max", "mm");
+  constexpr double kDegree = std::numbers::pi / 180;
+  const struct {
+    const char* name;
+    HandmadeRig made;
+  } cases[] = {{"glue 0.1 mm 0.2 deg", {0.1e-3, 0.2 * kDegree, 1}},
+               {"glue 0.3 mm 0.5 deg", {0.3e-3, 0.5 * kDegree, 1}},
+               {"glue 1 mm 2 deg", {1e-3, 2 * kDegree, 1}},
+               {"glue 0.3 mm 0.5 deg, print 0.99", {0.3e-3, 0.5 * kDegree, 0.99}},
+               {"glue 0.3 mm 0.5 deg, print 1.01", {0.3e-3, 0.5 * kDegree, 1.01}},
+               {"glue 0.3 mm 0.5 deg, print 1.03", {0.3e-3, 0.5 * kDegree, 1.03}}};
+  for (const auto& each : cases) {
+    table.rows.push_back(trials(each.made, 60, options, progress));
+    table.rows.back().settings = {{"rig", each.name}, {"waved [s]", 60.}};
+  }
+  for (const double seconds : {10., 20., 40., 80.}) {
+    table.rows.push_back(trials(cases[1].made, seconds, options, progress));
+    table.rows.back().settings = {{"rig", cases[1].name}, {"waved [s]", seconds}};
   }
   return table;
 }
@@ -237,12 +303,12 @@ std::vector<WorkPrecisionTable> trackingStudy(const StudyOptions& options, Progr
   const auto noise = [](Setting& setting, double value) { setting.look.noise = value; };
   return tablesOf(
       {{0, "cameras", part("Families and pictures", cameras())},
-       {0.3, "searches", part("Beside OpenCV's search", searches())},
        {0.5, "distances",
         part("Distance [m]", varied("distance [m]", {0.25, 0.4, 0.6, 0.9}, distance))},
        {0.6, "blur", part("Blur [px]", varied("blur [px]", {0.4, 0.8, 1.2, 1.8, 2.5}, blur))},
        {0.8, "noise", part("Noise [grey levels]", varied("noise", {0, 2, 5, 10, 20}, noise))},
-       {0.95, "tips", [&] { return tips(options); }}},
+       {0.9, "tips", [&] { return tips(options); }},
+       {0.92, "rigs", [&] { return rigs(options, progress); }}},
       progress);
 }
 

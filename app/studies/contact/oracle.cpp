@@ -16,11 +16,10 @@ namespace patina {
 namespace {
 
 constexpr double kOnFeature = 1e-10; // barycentric coordinate that counts as zero
-constexpr double kSlack = 1e-12;     // [m], to which half-spaces are kept
-constexpr double kSame = 1e-9;       // [m], a step that is none
-constexpr int kMostSteps = 2000;     // a few, unless it goes round a deep tip facet by facet
+constexpr double kSlack = 1e-12;     // tolerance of half-spaces [m]
+constexpr double kSame = 1e-9;       // smaller steps count as none [m]
+constexpr int kMaxSteps = 2000;      // usually a few; more around a deep tip, facet by facet
 
-// Corners at the same place are one vertex.
 std::vector<Triangle> welded(const TriangleMesh& mesh) {
   std::map<std::array<double, 3>, std::int32_t> first;
   std::vector<std::int32_t> same(mesh.positions.size());
@@ -41,7 +40,7 @@ std::uint64_t edgeKey(std::int32_t a, std::int32_t b) {
   return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
 }
 
-// One mesh with what the sign needs.
+// Mesh with the data for the sign of the distance.
 struct SignedMesh {
   explicit SignedMesh(const TriangleMesh& mesh)
       : tree(mesh), triangles(welded(mesh)), vertex(mesh.positions.size(), Vec3::Zero()) {
@@ -82,13 +81,13 @@ struct SignedMesh {
     const ClosestPoint closest = tree.closestPoint(p);
     ExactSurface::Nearest result{closest.point, pseudonormal(closest.surface), closest.distance};
     if (closed && (p - closest.point).dot(result.outward) < 0) result.distance *= -1;
-    // A sheet is left on the side where one is.
+    // An open sheet pushes towards the side of the point.
     if (!closed && (p - closest.point).dot(result.outward) < 0) result.outward *= -1;
     return result;
   }
 
   TriangleTree tree;
-  std::vector<Triangle> triangles; // corners that are one have one index
+  std::vector<Triangle> triangles; // with merged vertices
   std::vector<Vec3> face, vertex;  // normals, angle-weighted sums
   std::unordered_map<std::uint64_t, Vec3> edge;
   bool closed = false;
@@ -100,7 +99,7 @@ struct HalfSpace {
   double at(const Vec3& y) const { return normal.dot(y) - offset; }
 };
 
-// The point nearest to x that up to three planes share; false if that pulls on one of them.
+// Projects x onto the intersection of up to three planes; false if a multiplier is negative.
 bool ontoPlanes(std::span<const HalfSpace* const> planes, const Vec3& x, Vec3& z) {
   const auto n = static_cast<Eigen::Index>(planes.size());
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals(3, n);
@@ -119,8 +118,8 @@ bool ontoPlanes(std::span<const HalfSpace* const> planes, const Vec3& x, Vec3& z
   return true;
 }
 
-// x projected onto all of them: the basis of at most three takes in whichever is violated most
-// until none is. Each exchange moves the point farther from x, so that it ends.
+// Projects x onto the intersection of half-spaces by an active-set method: the most violated one
+// enters a basis of at most three. Each exchange increases the distance from x, so it terminates.
 Vec3 projected(const std::vector<HalfSpace>& all, const Vec3& x) {
   std::array<const HalfSpace*, 4> basis{};
   std::size_t size = 0;
@@ -155,7 +154,7 @@ Vec3 projected(const std::vector<HalfSpace>& all, const Vec3& x) {
       chosen_size = count;
       best_point = y;
     }
-    if (chosen_size == 0) return z; // nearly parallel: as good as numbers allow
+    if (chosen_size == 0) return z; // nearly parallel: limited by rounding
     basis = chosen;
     size = chosen_size;
     z = best_point;
@@ -163,8 +162,8 @@ Vec3 projected(const std::vector<HalfSpace>& all, const Vec3& x) {
   return z;
 }
 
-// The same within |z - centre| <= ball; the centre lies in all half-spaces. A ball's multiplier
-// only draws x towards its centre.
+// The same within |z - centre| <= ball; the centre satisfies all half-spaces. A ball's multiplier
+// moves x towards its centre.
 Vec3 projectedInBall(const std::vector<HalfSpace>& all, const Vec3& x, const Vec3& centre,
                      double ball, bool& at_ball) {
   Vec3 z = projected(all, x);
@@ -186,7 +185,7 @@ Vec3 projectedInBall(const std::vector<HalfSpace>& all, const Vec3& x, const Vec
   return inside;
 }
 
-// Triangles that can hinder what moves about, seen from where it is.
+// Triangles that can obstruct a moving point.
 class Obstacles {
  public:
   Obstacles(const ExactSurface& surface, double iso, const Vec3& centre, double ball)
@@ -203,10 +202,9 @@ class Obstacles {
     return std::sqrt(least) - iso_;
   }
 
-  // Half-spaces about y, each of which keeps its triangles at iso. A triangle that one of them
-  // keeps away already needs none of its own. The plane across the way to the nearest point, which
-  // is what stops y there; or first, where y is clear of it, the face's own, which lets y farther
-  // along the face.
+  // Half-spaces about y, each of which keeps its triangles at distance iso. A triangle kept away by
+  // an earlier one needs none. Its plane is perpendicular to the direction from the nearest point,
+  // or the face's own (used first if y is clear of it), which lets y move farther along the face.
   enum class Prefer { faces, ways };
   const std::vector<HalfSpace>& halfSpaces(const Vec3& y, Prefer prefer) {
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
@@ -249,8 +247,8 @@ class Obstacles {
   std::vector<HalfSpace> spaces_;
 };
 
-// Points about c that are free and nearer to the tip; c itself if there is none. Nearer to c than
-// iso, so that no triangle lies between.
+// Tries free points near c that are closer to the tip; returns c if there is none. They are nearer
+// to c than iso, so no triangle lies between.
 Vec3 nudged(const Obstacles& obstacles, double iso, const Vec3& c, const Vec3& tip,
             const Vec3& centre, double ball) {
   const double reach = std::min(0.5 * iso, 2e-6);
@@ -314,8 +312,8 @@ Box3 ExactSurface::bounds() const {
   return box;
 }
 
-ProxyAnswer movedOut(const ExactSurface& surface, double iso, const Vec3& p) {
-  iso = std::max(iso, kLeastIso);
+ProxyAnswer projectedOutside(const ExactSurface& surface, double iso, const Vec3& p) {
+  iso = std::max(iso, kMinIso);
   ProxyAnswer answer{p, false, false, 0};
   std::vector<HalfSpace> walls;
   for (; answer.steps < 60; ++answer.steps) {
@@ -325,10 +323,10 @@ ProxyAnswer movedOut(const ExactSurface& surface, double iso, const Vec3& p) {
       return answer;
     }
     const Vec3 way = answer.point - near.point;
-    // Close to the surface the way's direction is rounding.
+    // Close to the surface this direction would be rounding.
     const Vec3 out =
         way.norm() > 1e-8 ? Vec3(way.normalized() * (near.distance < 0 ? -1 : 1)) : near.outward;
-    // Away from what is round or many-sided planes that were seen earlier only mislead.
+    // Old planes mislead at round or many-sided parts.
     if (answer.steps % 12 == 0) walls.clear();
     walls.push_back({out, out.dot(near.point) + iso});
     answer.point = answer.steps < 36 ? projected(walls, p) : Vec3(near.point + (iso + 1e-9) * out);
@@ -338,17 +336,17 @@ ProxyAnswer movedOut(const ExactSurface& surface, double iso, const Vec3& p) {
 
 ProxyAnswer proxyOracle(const ExactSurface& surface, double iso, const Vec3& tip, const Vec3& seed,
                         double ball) {
-  iso = std::max(iso, kLeastIso);
-  ProxyAnswer answer = movedOut(surface, iso, seed);
+  iso = std::max(iso, kMinIso);
+  ProxyAnswer answer = projectedOutside(surface, iso, seed);
   if (!answer.found) return answer;
   const Vec3 centre = answer.point;
   Obstacles obstacles(surface, iso, centre, ball);
-  for (answer.steps = 0; answer.steps < kMostSteps; ++answer.steps) {
+  for (answer.steps = 0; answer.steps < kMaxSteps; ++answer.steps) {
     Vec3 next = answer.point;
     for (const auto prefer : {Obstacles::Prefer::faces, Obstacles::Prefer::ways}) {
       next = projectedInBall(obstacles.halfSpaces(answer.point, prefer), tip, centre, ball,
                              answer.at_ball);
-      // Where nothing is gained but slack the two kinds would take turns for ever.
+      // The two kinds of planes would alternate for ever over gains within the tolerance.
       const double gain = (answer.point - tip).norm() - (next - tip).norm();
       if ((next - answer.point).norm() >= kSame && (gain > 1e-13 || answer.steps == 0)) break;
       next = answer.point;

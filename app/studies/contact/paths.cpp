@@ -1,20 +1,20 @@
-// Where the course goes: see course.h.
+// Paths of the trials: see contact_trials.h.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 
-#include "app/studies/contact/course.h"
+#include "app/studies/contact/contact_trials.h"
 #include "geometry/mesh/mesh_report.h"
 
 namespace patina {
 namespace {
 
-constexpr double kAbove = 3e-3; // [m], where a touch begins
-constexpr double kShutIn = 0.2; // winding number, well below what counts as inside
+constexpr double kAbove = 3e-3; // start height of a touch [m]
+constexpr double kShutIn = 0.2; // winding number, well below the threshold of the inside
 
-// Steps of at most `step` from the last point of the path.
+// Appends steps of at most `step` from the last point of the path.
 void walk(std::vector<Vec3>& path, const Vec3& to, double step) {
   const Vec3 from = path.back();
   const int count = std::max(1, static_cast<int>(std::ceil((to - from).norm() / step)));
@@ -37,7 +37,7 @@ TouchPaths::TouchPaths(const ExactSurface& surface, double iso, unsigned seed)
   for (const TriangleMesh& mesh : surface.meshes()) {
     closed = closed && inspect(mesh).watertight;
     all = joined(all, mesh);
-    // Edge -> the face on its left, until the one on its right comes.
+    // Maps an edge to the face on its left until that on its right is found.
     std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> left;
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
       const Vec3 a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
@@ -60,7 +60,7 @@ TouchPaths::TouchPaths(const ExactSurface& surface, double iso, unsigned seed)
   if (surface.meshes().size() > 1) findMeetings();
 }
 
-// Where two of the meshes meet: faces outside another one and no farther than 2 mm from it.
+// Finds junctions of two meshes: faces outside another mesh and at most 2 mm from it.
 void TouchPaths::findMeetings() {
   std::vector<ExactSurface> parts;
   for (const TriangleMesh& mesh : surface_.meshes()) parts.emplace_back(std::vector{mesh});
@@ -137,7 +137,7 @@ TouchPaths::Touch TouchPaths::touch() {
   Touch touch;
   Place begin;
   Vec3 start = Vec3::Zero();
-  // From where the last touch ended, where that can be; else from anywhere.
+  // Starts at the end of the last touch if possible, otherwise anywhere.
   bool chosen = false;
   for (int i = 0; i < 40 && has_last_ && !chosen; ++i) {
     begin = uniform(0, 1) < 0.3 ? placeByACrease() : place();
@@ -163,7 +163,7 @@ TouchPaths::Touch TouchPaths::touch() {
   walk(path, guide - most * normal, speed * kTick);
 
   Vec3 heading = direction();
-  const double turn = uniform(-60, 60), waves = uniform(5, 60); // [rad/m] of way
+  const double turn = uniform(-60, 60), waves = uniform(5, 60); // [rad/m] of path length
   const double length = uniform(0.01, 0.06);
   const int ticks = static_cast<int>(std::clamp(length / (speed * kTick), 100.0, 500.0));
   for (int i = 0; i < ticks; ++i) {

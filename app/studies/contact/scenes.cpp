@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "field/merge/merge_fields.h"
 #include "field/surface/models.h"
 #include "geometry/mesh/shapes.h"
@@ -36,14 +36,14 @@ std::vector<Vec2> disc(double radius, int corners) {
 }
 
 TriangleMesh dent() {
-  const double radius = 0.04, depth = 0.012; // of the ball pressed in
+  const double radius = 0.04, depth = 0.012; // dent of a ball
   return reliefBlock(0.1, -0.03, 64, [=](double x, double y) {
     const double inside = radius * radius - x * x - y * y;
     return inside <= 0 ? 0 : std::min(0.0, radius - depth - std::sqrt(inside));
   });
 }
 
-// Tilted against the grid, and 0.1 m long again.
+// Tilted against the grid and scaled to 0.1 m again.
 TriangleMesh turned(const TriangleMesh& mesh) {
   const TriangleMesh whole = tilted(mesh);
   const double scale = 0.1 / bounds(whole).sizes().maxCoeff();
@@ -83,7 +83,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
        }},
       {"torus", [] { return one(torus(0.035, 0.015, 96, 48)); }},
       {"dinosaur", [] { return one(dinosaur(100)); }},
-      // Sheets: nothing of them is left at iso 0.
+      // Sheets vanish at iso 0.
       {"galleon",
        [] {
          ContactScene scene = one(galleon(0.1));
@@ -92,7 +92,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
        }},
       {"pottery", [] { return one(vase()); }},
       {"rough", [] { return one(roughSolid(5)); }},
-      // Judged where its holes do not let the tip in, for the judge knows no inside of it.
+      // Only isos at which the tip cannot enter its holes, because the oracle has no inside here.
       {"scan",
        [] {
          ContactScene scene = one(scanSolid(5));
@@ -229,7 +229,7 @@ TriangleMesh roughSolid(unsigned seed) {
     const double bumps =
         1 + 0.12 * std::sin(4 * p.x() + 1) * std::sin(5 * p.y()) + 0.06 * std::sin(9 * p.z() + 2);
     const Vec3 jitter(normal(random), normal(random), normal(random));
-    // Across the surface uneven triangles, along it the noise of a scanner.
+    // Uneven triangles along the surface, scanner noise across it.
     p = 0.045 * bumps * p + 0.15 * edge * (jitter - jitter.dot(p) * p) +
         0.15e-3 * normal(random) * p;
   }
@@ -274,7 +274,7 @@ std::vector<ContactScene> contactScenes() {
   return scenes;
 }
 
-unsigned courseSeed(const ContactScene& scene, double iso, unsigned seed) {
+unsigned trialSeed(const ContactScene& scene, double iso, unsigned seed) {
   for (const char letter : scene.name) seed = 31 * seed + static_cast<unsigned char>(letter);
   return 31 * seed + static_cast<unsigned>(std::lround(1e6 * iso));
 }
@@ -307,7 +307,7 @@ std::shared_ptr<const HapticSnapshot> contactSnapshot(std::shared_ptr<const Surf
                                                       double iso, const std::string& contact) {
   Scene scene;
   if (!contact.empty()) setValue(scene, "contact", contact);
-  scene.haptics.stiffness = kJudgeStiffness;
+  scene.haptics.stiffness = kTestStiffness;
   scene.haptics.force_limit = 1e3;
   if (iso > 0) scene.haptics.tip_radius = iso;
   return compileStages(scene, std::move(field));

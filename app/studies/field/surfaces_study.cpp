@@ -1,4 +1,4 @@
-#include "app/studies/field/surfaces_study.h"
+#include "app/studies/framework/studies.h"
 
 #include <algorithm>
 #include <chrono>
@@ -6,9 +6,10 @@
 #include <numbers>
 #include <random>
 
-#include "app/studies/query_timing.h"
+#include "app/studies/field/study_shapes.h"
+#include "app/studies/framework/query_timing.h"
 #include "geometry/mesh/shapes.h"
-#include "session/build/compile_scene.h"
+#include "session/compile/compile_scene.h"
 
 namespace patina {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr double kRadius = 0.03; // [m]
 constexpr double kStiffness = 1000;
 constexpr double kPeriod = 1e-3;
-constexpr double kReach = 4.2e-3; // [m]: the deepest point of the loops
+constexpr double kReach = 4.2e-3; // deepest point of the loops [m]
 
 using Method = HapticProperties::Contact;
 Vec3 randomDirection(std::mt19937& random) {
@@ -24,7 +25,7 @@ Vec3 randomDirection(std::mt19937& random) {
   return Vec3(normal(random), normal(random), normal(random)).normalized();
 }
 
-// The band holds all that is asked of it, on both sides.
+// The band covers all requested values on both sides.
 std::shared_ptr<const SurfaceField> sphereField(int resolution) {
   const Box3 box(Vec3::Constant(-kRadius), Vec3::Constant(kRadius));
   FieldSpec spec;
@@ -34,7 +35,7 @@ std::shared_ptr<const SurfaceField> sphereField(int resolution) {
       [](const Vec3& p) { return p.norm() - kRadius; }, gridAround(box, spec), spec.band)));
 }
 
-// A path from pole to pole, as a hand goes; each tip is that of a spiral's point i of `count`.
+// Point i of `count` of a spiral from pole to pole, like a hand's path.
 Vec3 spiral(int i, int count, int turns) {
   const double z = 1 - 2 * (i + 0.5) / count, around = 2 * std::numbers::pi * turns * z;
   const double r = std::sqrt(1 - z * z);
@@ -49,7 +50,7 @@ Contact touch(const HapticSnapshot& snapshot, const Vec3& tip) {
 struct Mode {
   std::string name;
   void (*set)(HapticProperties&);
-  double low, high;        // where tips are taken, above the sphere [m]
+  double low, high;        // range of tip heights above the sphere [m]
   double (*force)(double); // outward force [N] at that height
 };
 
@@ -67,7 +68,7 @@ const std::vector<Mode>& modes() {
   return all;
 }
 
-// T-K12a, T-K13a: the whole force vector on a sphere, fresh tips.
+// T-K12a, T-K13a: the whole force vector on a sphere, for independent tips.
 WorkPrecisionRow forceRow(const Mode& mode, const HapticSnapshot& snapshot, int tips) {
   WorkPrecisionRow row;
   std::vector<Vec3> points;
@@ -89,7 +90,7 @@ WorkPrecisionRow forceRow(const Mode& mode, const HapticSnapshot& snapshot, int 
   return row;
 }
 
-// A row for each resolution, contact and sampler; the order is that of the paper's, ray and kim.
+// One row per resolution, contact and sampler; the order is that of ray and kim, as in the paper.
 template <class Row>
 void addRows(WorkPrecisionTable& table, const std::vector<int>& resolutions, Progress& progress,
              const Row& rowOf) {
@@ -105,9 +106,9 @@ void addRows(WorkPrecisionTable& table, const std::vector<int>& resolutions, Pro
         scene.haptics.stiffness = kStiffness;
         scene.haptics.force_limit = 100;
         WorkPrecisionRow row = rowOf(std::move(scene), field);
-        row.knobs = {{"contact", method == Method::proxy ? "proxy" : "ray"},
-                     {"resolution", resolution},
-                     {"sampler", std::string(name(sampler))}};
+        row.settings = {{"contact", method == Method::proxy ? "proxy" : "ray"},
+                        {"resolution", resolution},
+                        {"sampler", std::string(name(sampler))}};
         row.bytes = static_cast<double>(field->bytes());
         if (method == Method::ray && sampler == Sampler::kim)
           order.add(field->grid.voxel, row.error);
@@ -129,14 +130,14 @@ WorkPrecisionTable force(const Mode& mode, const std::vector<int>& resolutions, 
   return table;
 }
 
-// What the surface gives.
+// Energy from the surface.
 double loopWork(const HapticSnapshot& snapshot, const Vec3& centre, const Vec3& u, const Vec3& v) {
   constexpr int kCount = 2000;
   constexpr double kLoop = 1.5e-3; // [m]
   ContactMemory memory;
   double work = 0;
   Vec3 last_force = Vec3::Zero(), last_tip = Vec3::Zero();
-  for (int i = -kCount; i <= kCount; ++i) { // a lap to settle in first
+  for (int i = -kCount; i <= kCount; ++i) { // the first lap settles the contact
     const double angle = 2 * std::numbers::pi * i / kCount;
     const Vec3 tip = centre + kLoop * (std::cos(angle) * u + std::sin(angle) * v);
     const Vec3 force = tick(snapshot, memory, tip, kPeriod).force;
@@ -208,18 +209,18 @@ WorkPrecisionTable overlap(const std::vector<int>& resolutions, int tips, Progre
       std::mt19937 random(9);
       std::uniform_real_distribution<double> share(0.2, 1);
       WorkPrecisionRow row;
-      row.knobs = {{"resolution", resolution}, {"re-distanced", redistance}};
+      row.settings = {{"resolution", resolution}, {"re-distanced", redistance}};
       std::vector<Vec3> points;
       double outside = 0;
       for (int i = 0; i < tips; ++i) {
-        // In the lens that both balls fill: |p| < 10 mm lies in both.
+        // Points with |p| < 10 mm lie in both balls.
         const Vec3 p = share(random) * 0.0099 * randomDirection(random);
         points.push_back(p);
         const Contact contact = touch(*compiled->snapshot, p);
         const double error = std::abs((contact.vcp - p).norm() - lensDepth(p, kBall, kApart));
         row.error += error * error / tips;
         row.error_max = std::max(row.error_max, error);
-        // And in the part of the right ball's skin that is free.
+        // Also in the free part of the right ball's surface layer.
         const Vec3 n = (randomDirection(random) + 1.2 * Vec3::UnitX()).normalized();
         const Vec3 skin = Vec3(kApart, 0, 0) + (kBall - 1e-3) * n;
         outside = std::max(outside, std::abs((touch(*compiled->snapshot, skin).vcp - skin).norm() -
@@ -236,7 +237,7 @@ WorkPrecisionTable overlap(const std::vector<int>& resolutions, int tips, Progre
   return table;
 }
 
-// K14: what a tick costs by the number of merged objects; the error is that of the force on one
+// K14: time of a tick by the number of merged objects; the error is that of the force on one
 // of them against the closed form.
 WorkPrecisionTable crowd(const std::vector<int>& sides, Progress& progress) {
   constexpr double kBall = 4e-3, kApart = 0.012;
@@ -254,8 +255,8 @@ WorkPrecisionTable crowd(const std::vector<int>& sides, Progress& progress) {
     const auto compiled = compile(scene, build);
     const double took = seconds(start);
     WorkPrecisionRow row;
-    row.knobs = {{"objects", side * side}};
-    // One ball after another, round each along a spiral, as a hand goes.
+    row.settings = {{"objects", side * side}};
+    // Spirals around one ball after another, like a hand's path.
     const int balls = side * side, tips = 3000;
     std::vector<Vec3> points;
     for (int of = 0; of < balls; ++of) {
@@ -279,20 +280,6 @@ WorkPrecisionTable crowd(const std::vector<int>& sides, Progress& progress) {
 }
 
 } // namespace
-
-double lensDepth(const Vec3& p, double radius, double a) {
-  const double rim = std::sqrt(radius * radius - a * a);
-  const double to_rim = std::hypot(p.x(), std::hypot(p.y(), p.z()) - rim);
-  double depth = to_rim;
-  for (const double centre : {-a, a}) {
-    const Vec3 from = p - Vec3(centre, 0, 0);
-    if (from.norm() > radius || from.isZero()) continue;
-    // The way out along the radius counts where it does not end inside the other sphere.
-    const Vec3 exit = Vec3(centre, 0, 0) + radius * from.normalized();
-    if ((exit + Vec3(centre, 0, 0)).norm() >= radius) depth = std::min(depth, radius - from.norm());
-  }
-  return depth;
-}
 
 std::vector<WorkPrecisionTable> surfacesStudy(const StudyOptions& options, Progress& progress) {
   const std::vector<int> resolutions =

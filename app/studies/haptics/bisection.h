@@ -1,9 +1,10 @@
-// Where something stops to hold.
+// Bisection of a threshold.
 #pragma once
 
 namespace patina {
 
-// Between `low`, where it holds, and `high`, where it does not, to `tolerance` of it.
+// Threshold between `low`, where `holds` is true, and `high`, where it is false, to a relative
+// `tolerance`.
 template <class Holds>
 double bisected(double low, double high, double tolerance, const Holds& holds) {
   while (high - low > tolerance * high) {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/shapes.h"
 
 namespace patina {
@@ -123,7 +123,6 @@ ContactTestErrors contactTestErrors(const HapticSnapshot& snapshot, const Contac
 
 namespace {
 
-// Nanoseconds of each group of `batch` ticks, divided by it.
 std::vector<double> tickTimes(const HapticSnapshot& snapshot, const ContactTest& test,
                               std::size_t batch) {
   ContactMemory memory;

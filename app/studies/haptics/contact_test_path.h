@@ -1,19 +1,19 @@
-// The fixed contact test: a tip that slides around a sphere at a known depth, so that force,
-// friction and their changes have closed forms. Shared by the study and the benchmark.
+// Fixed contact test: a tip slides around a sphere at a known depth, so that force, friction and
+// their changes have closed forms. Used by the study and the benchmark.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "core/progress.h"
-#include "haptics/servo/snapshot.h"
+#include "haptics/law/snapshot.h"
 
 namespace patina {
 
 inline constexpr double kContactTestPeriod = 1e-3; // [s]
 inline constexpr int kContactTestTicks = 20000;
 inline constexpr int kContactTestLeadIn = 300;
-// Ticks that errors with friction leave out: the VCP sticks until it has been dragged by mu_s d.
+// Ticks ignored in errors with friction: the VCP sticks until it has been dragged by mu_s d.
 inline constexpr int kContactTestSettle = 100;
 
 struct ContactTestSpec {
@@ -36,10 +36,10 @@ ContactTest makeContactTest(const ContactTestSpec& spec);
 Scene contactTestScene(const ContactTestSpec& spec); // haptic values only
 
 struct ContactTestErrors {
-  double direction_mean = 0, direction_max = 0; // [deg], of the force; with friction,
-  // of the friction alone: F - (F.n) n against -v_t
+  // [deg], of the force; with friction, of the friction alone: F - (F.n) n against -v_t
+  double direction_mean = 0, direction_max = 0;
   double magnitude_mean = 0, magnitude_max = 0; // [%]
-  double jump_rms = 0;      // [N], of tick-to-tick changes against the reference's own
+  double jump_rms = 0;      // rms of force changes per tick minus the reference's [N]
   double coulomb_ratio = 0; // mean |F_t| / |F_n| about the sphere's normal
   int lost = 0;             // ticks with less than half the normal force
   int faults = 0;
@@ -49,18 +49,18 @@ ContactTestErrors contactTestErrors(const HapticSnapshot& snapshot, const Contac
 
 inline constexpr int kTimingBatch = 50;
 struct ContactTestTiming {
-  double p50 = 0, p99 = 0; // [ns] of one tick, clock included
-  double clock = 0;        // [ns] of reading the clock alone, the part included above
-  double batch = 0;        // [ns] a tick, median over batches of kTimingBatch timed as one
+  double p50 = 0, p99 = 0; // one tick, clock included [ns]
+  double clock = 0;        // reading the clock alone, included above [ns]
+  double batch = 0;        // per tick, median over batches of kTimingBatch timed as one [ns]
 };
-// The least of `repeats` passes: what other work on the machine adds is not the tick's.
+// Minimum over `repeats` passes, because other load can only add time.
 ContactTestTiming contactTestTiming(const HapticSnapshot& snapshot, const ContactTest& test,
                                     int repeats);
 
-// The sphere's exact distance on the grid of the fixed test: 150 cells, band 8 [voxels].
+// Exact distance of the sphere on the grid of the fixed test: 150 cells, band 8 [voxels].
 std::shared_ptr<const SurfaceField> analyticSphere(double radius, int resolution = 150,
                                                    double band = 8);
-// The same grid rule around an icosphere of 20 frequency^2 triangles, each shrunk by the fraction
+// The same grid around an icosphere of 20 frequency^2 triangles, each shrunk by the fraction
 // `crack`.
 std::shared_ptr<const SurfaceField> meshSphere(double radius, int frequency, double crack,
                                                Progress& progress);

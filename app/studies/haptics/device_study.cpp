@@ -1,39 +1,79 @@
-#include "app/studies/haptics/device_study.h"
+#include "app/studies/framework/studies.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
 #include "app/studies/haptics/bisection.h"
-#include "app/studies/haptics/swing_limit.h"
-#include "haptics/contact/plane.h"
-#include "haptics/devices/device_catalog.h"
-#include "haptics/devices/falcon/emulated_falcon.h"
-#include "haptics/devices/falcon/falcon_device.h"
-#include "haptics/devices/falcon/falcon_frame.h"
-#include "haptics/devices/falcon/wire_run.h"
-#include "haptics/devices/link/link_loop.h"
+#include "haptics/catalog/device_catalog.h"
+#include "haptics/falcon/emulated_falcon.h"
+#include "haptics/falcon/falcon_device.h"
+#include "haptics/falcon/falcon_frame.h"
+#include "haptics/law/plane.h"
+#include "haptics/law/stabilisers.h"
+#include "haptics/link/link_loop.h"
+#include "haptics/loop_model/stability_limit.h"
 #include "haptics/servo/cross_fade.h"
-#include "haptics/stability/stabilisers.h"
+#include "haptics/simulation/wire_benchmark.h"
 
 namespace patina {
 namespace {
 
+// Max stiffness of a sampled wall on a device with dry friction or backlash, where it depends on
+// the handle's speed (MATH 2.1.8).
+struct GearNonlinearity {
+  double friction = 0; // Coulomb friction at the handle [N]
+  double play = 0;     // backlash of the measured position, at the handle [m]
+};
+
+constexpr double kPi = std::numbers::pi;
+
+bool dies(SampledLoop loop, const GearNonlinearity& gear, double stiffness,
+          const std::function<double(double)>& speed) {
+  // Backlash lowers the frequency below that of K alone; two iterations suffice.
+  double share = 1, lag = 0, fast = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double omega = std::sqrt((share * stiffness + loop.hand_stiffness) / loop.mass);
+    fast = speed(omega);
+    const double half = gear.play / 2, way = fast / omega; // amplitude of the handle
+    if (way <= half) return true; // within the backlash: nothing is measured
+    const double part = half / way, root = std::sqrt(part * (1 - part));
+    share = 0.5 + (std::asin(1 - 2 * part) + 2 * (1 - 2 * part) * root) / kPi;
+    lag = 4 / kPi * part * (1 - part) / omega; // [s]
+  }
+  loop.damping += 4 * gear.friction / (kPi * fast) - stiffness * lag;
+  return loop.damping >= 0 && spectralRadius(loop, share * stiffness) < 1;
+}
+
+// Stiffness of a limit cycle, by describing functions of friction and backlash (Gelb & Vander Velde
+// 1968). `speed` [m/s] is the oscillation's amplitude at a frequency [rad/s]. Without friction and
+// backlash equal to stiffnessLimit(loop); 0 if every stiffness is unstable.
+double limitCycleStiffness(const SampledLoop& loop, const GearNonlinearity& gear,
+                           const std::function<double(double)>& speed) {
+  const double high = 4 * loop.mass / (loop.period * loop.period);
+  double low = 1e-4 * high;
+  if (!dies(loop, gear, low, speed)) return 0;
+  double next = low;
+  while (next < high && dies(loop, gear, next, speed)) low = next, next *= 1.1;
+  return bisected(low, next, 1e-6, [&](double k) { return dies(loop, gear, k, speed); });
+}
+
 constexpr double kTick = 1e-3;
 
-// The servo's tick over driver, wire and mechanics, in simulated time.
+// Servo tick with driver, wire and mechanics, in simulated time.
 class Loop {
  public:
-  Loop(const FalconBenchSpec& spec, std::shared_ptr<const HapticSnapshot> snapshot)
-      : clock_(std::make_shared<SimulatedClock>()), notes_(std::make_shared<LinkNotes>()),
+  Loop(const FalconEmulatorSpec& spec, std::shared_ptr<const HapticSnapshot> snapshot)
+      : clock_(std::make_shared<SimulatedClock>()), notes_(std::make_shared<LinkStatistics>()),
         bench(spec, clock_),
         link_(makeFalconLink([this] { return bench.plug(); }, {}, clock_), guard(), clock_, notes_),
         snapshot_(std::move(snapshot)) {
-    law_.turnTo(snapshot_.get());
+    law_.fadeTo(snapshot_.get());
   }
-  // The device's own peak is left, nothing else: the guard is not what is measured here.
+  // Only the device's own force limit stays: the guard is not under test.
   static GuardSpec guard() {
     GuardSpec spec;
     spec.ramp = kTick;
@@ -44,10 +84,9 @@ class Loop {
     clock_->waitUntil(due_);
     const DeviceState& state = link_.step({force_, clock_->now()});
     force_.setZero();
-    if (judge(state) == DeviceStatus::ok) force_ = law_.tick(state.position, kTick).force;
+    if (effectiveStatus(state) == DeviceStatus::ok) force_ = law_.tick(state.position, kTick).force;
     ++ticks;
   }
-  // Root mean square of the handle's speed along z.
   double rms(double seconds) {
     double sum = 0;
     const int count = static_cast<int>(seconds / kTick);
@@ -61,10 +100,10 @@ class Loop {
 
  private:
   std::shared_ptr<SimulatedClock> clock_;
-  std::shared_ptr<LinkNotes> notes_;
+  std::shared_ptr<LinkStatistics> notes_;
 
  public:
-  FalconBench bench;
+  FalconEmulator bench;
   std::uint64_t ticks = 0;
 
  private:
@@ -84,9 +123,9 @@ HapticProperties wall(double stiffness) {
 
 constexpr double kBlow = 0.6, kFor = 0.01; // [N], [s]
 
-// A handle is pressed into the wall gently, then struck: does it swing less in the end than the
-// blow made it? With play it never comes to rest.
-bool decays(double stiffness, const FalconBenchSpec& spec, std::uint64_t& ticks) {
+// Presses the handle gently into the wall, then strikes it: is the final oscillation smaller than
+// after the blow? With backlash it never stops.
+bool decays(double stiffness, const FalconEmulatorSpec& spec, std::uint64_t& ticks) {
   constexpr double kPress = 4, kWatched = 0.2; // [N], [s]
   Loop loop(spec, planeSnapshot(wall(stiffness), {}));
   for (int i = 0; i < 1000; ++i) {
@@ -102,7 +141,7 @@ bool decays(double stiffness, const FalconBenchSpec& spec, std::uint64_t& ticks)
   return late < kBlow * kFor / spec.body.mass / std::numbers::sqrt2;
 }
 
-// Of the angle of all three thighs, at the handle in the middle.
+// Displacement of the centred handle for an angular backlash of all three thighs.
 double atHandle(double play) {
   const FalconShape shape;
   const Angles middle = falconAngles(shape, kFalconCentre).value();
@@ -117,7 +156,7 @@ WorkPrecisionTable limits(bool quick, Progress& progress) {
               "the blow makes it (2.1.8)",
               "%");
   struct Case {
-    double mass, damping, spring, friction, play;
+    double mass, damping, spring, friction, backlash;
   };
   std::vector<Case> cases{{.25, 3, 60, 0, 0},
                           {.25, 5, 60, 0, 0},
@@ -131,19 +170,20 @@ WorkPrecisionTable limits(bool quick, Progress& progress) {
       cases.push_back(more);
   for (const Case& c : cases) {
     progress.throwIfCancelled();
-    const FalconBenchSpec spec{
+    const FalconEmulatorSpec spec{
         .body = {.mass = c.mass, .damping = c.damping, .spring = c.spring, .friction = c.friction},
-        .play = c.play};
+        .backlash = c.backlash};
     const SampledLoop sampled{.mass = c.mass,
                               .damping = c.damping,
                               .hand_stiffness = c.spring,
                               .period = kTick,
                               .delay = 1};
-    // A blow of a length that is not short against the swing.
+    // The blow's duration is not short against the oscillation.
     const auto speed = [&](double omega) {
       return 2 * kBlow / (c.mass * omega) * std::abs(std::sin(omega * kFor / 2));
     };
-    const double predicted = swingLimit(sampled, {c.friction, atHandle(c.play)}, speed);
+    const double predicted =
+        limitCycleStiffness(sampled, {c.friction, atHandle(c.backlash)}, speed);
     const auto start = std::chrono::steady_clock::now();
     std::uint64_t ticks = 0;
     const double measured = bisected(0.5 * predicted, 1.6 * predicted, 5e-3, [&](double stiffness) {
@@ -151,11 +191,11 @@ WorkPrecisionTable limits(bool quick, Progress& progress) {
     });
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     WorkPrecisionRow row;
-    row.knobs = {{"m [kg]", c.mass},
-                 {"b [N s/m]", c.damping},
-                 {"hand [N/m]", c.spring},
-                 {"friction [N]", c.friction},
-                 {"play [rad]", c.play}};
+    row.settings = {{"m [kg]", c.mass},
+                    {"b [N s/m]", c.damping},
+                    {"hand [N/m]", c.spring},
+                    {"friction [N]", c.friction},
+                    {"play [rad]", c.backlash}};
     row.error = row.error_max = 100 * std::abs(measured / predicted - 1);
     row.ns = 1e9 * taken.count() / static_cast<double>(ticks);
     row.more = {{"measured [N/m]", measured},
@@ -181,7 +221,9 @@ WorkPrecisionTable displayed(bool quick, Progress& progress) {
     Loop loop({.body = {.mass = model.mass, .damping = model.damping, .spring = 60, .friction = 0}},
               planeSnapshot(haptics, plan));
     loop.bench.push = Vec3(0, 0, -2);
+    const auto start = std::chrono::steady_clock::now();
     loop.rms(3);
+    const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
     double depth = 0, force = 0, low = 1, high = -1;
     for (int i = 0; i < 1000; ++i) {
       loop.tick();
@@ -191,10 +233,11 @@ WorkPrecisionTable displayed(bool quick, Progress& progress) {
       low = std::min(low, z);
       high = std::max(high, z);
     }
-    const double expected = plan.softened(stiffness), measured = force / depth;
+    const double expected = plan.seriesStiffness(stiffness), measured = force / depth;
     WorkPrecisionRow row;
-    row.knobs = {{"K [N/m]", stiffness}};
+    row.settings = {{"K [N/m]", stiffness}};
     row.error = row.error_max = 100 * std::abs(measured / expected - 1);
+    row.ns = taken.count() * kTick / 3;
     row.more = {{"displayed [N/m]", measured},
                 {"expected [N/m]", expected},
                 {"limit [N/m]", plan.predicted_limit.value_or(0)},
@@ -206,7 +249,7 @@ WorkPrecisionTable displayed(bool quick, Progress& progress) {
   return table;
 }
 
-// Of one count of any of the three encoders, and of one value of any of the three motors.
+// Resolution for one count of any encoder and for one value of any motor.
 WorkPrecisionTable quantisation(bool quick, Progress& progress) {
   WorkPrecisionTable table =
       tableOf("One count of an encoder, over the workspace at each height", "m");
@@ -215,9 +258,10 @@ WorkPrecisionTable quantisation(bool quick, Progress& progress) {
   for (const double z : {-0.04, -0.02, 0., 0.02, 0.04}) {
     progress.throwIfCancelled();
     WorkPrecisionRow row;
-    row.knobs = {{"z [m]", z}};
+    row.settings = {{"z [m]", z}};
     double squares = 0, force_most = 0, force_squares = 0;
     int count = 0;
+    const auto start = std::chrono::steady_clock::now();
     for (int ring = 0; ring <= steps; ++ring)
       for (int turn = 0; turn < 3 * steps; ++turn) {
         const double radius = 0.045 * ring / steps,
@@ -226,7 +270,7 @@ WorkPrecisionTable quantisation(bool quick, Progress& progress) {
             kFalconCentre + Vec3(radius * std::cos(angle), radius * std::sin(angle), z);
         const auto angles = falconAngles(shape, place);
         if (!angles) continue;
-        Eigen::Matrix3d torques; // of the three unit forces
+        Eigen::Matrix3d torques; // torques of the three unit forces
         for (int i = 0; i < 3; ++i)
           torques.col(i) =
               falconTorques(shape, place, *angles, Vec3::Unit(i)).value_or(Vec3::Zero());
@@ -235,7 +279,7 @@ WorkPrecisionTable quantisation(bool quick, Progress& progress) {
           Angles next = *angles;
           next[leg] += kFalconCount;
           const double step = (falconPose(shape, next, place).handle - place).norm();
-          const double push = forces.col(leg).norm() * kFalconFullTorque / kMostMotor;
+          const double push = forces.col(leg).norm() * kFalconFullTorque / kMaxMotor;
           squares += step * step;
           force_squares += push * push;
           row.error_max = std::max(row.error_max, step);
@@ -243,7 +287,9 @@ WorkPrecisionTable quantisation(bool quick, Progress& progress) {
           ++count;
         }
       }
+    const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
     row.error = std::sqrt(squares / count);
+    row.ns = taken.count() / count;
     row.more = {{"one motor value, rms [N]", std::sqrt(force_squares / count)},
                 {"one motor value, most [N]", force_most}};
     table.rows.push_back(std::move(row));
@@ -258,10 +304,10 @@ WorkPrecisionTable turns(bool quick, Progress& progress) {
               "us");
   for (const unsigned faults : {0U, 10U})
     for (const int load : {0, 2}) {
-      const WireRun run = runOnEmulatedWire(
+      const WireBenchmark run = runOnEmulatedWire(
           {.seconds = quick ? 0.5 : 10, .faults_per_thousand = faults, .load = load}, progress);
       WorkPrecisionRow row;
-      row.knobs = {{"faults a thousand", static_cast<int>(faults)}, {"load [threads]", load}};
+      row.settings = {{"faults a thousand", static_cast<int>(faults)}, {"load [threads]", load}};
       row.error = std::max(0.0, run.round_us.p999 - run.bare_round_us.p999);
       row.error_max = std::max(0.0, run.round_us.max - run.bare_round_us.max);
       row.ns = 1e3 * run.round_us.p50;
@@ -276,8 +322,11 @@ WorkPrecisionTable turns(bool quick, Progress& progress) {
                   {"ticks", static_cast<double>(run.ticks)},
                   {"missed", static_cast<double>(run.missed)},
                   {"injected", static_cast<double>(run.injected)},
-                  {"unnoticed", static_cast<double>(run.unnoticed)},
-                  {"old places felt", static_cast<double>(run.stale)}};
+                  {"unnoticed", static_cast<double>(run.undetected_faults)},
+                  {"faults by injection", static_cast<double>(run.causes.injected)},
+                  {"faults by delay", static_cast<double>(run.causes.delayed)},
+                  {"faults by neither", static_cast<double>(run.causes.unexplained)},
+                  {"old places felt", static_cast<double>(run.outdated_states)}};
       table.rows.push_back(std::move(row));
     }
   return table;

@@ -1,4 +1,4 @@
-#include "app/studies/haptics/friction_study.h"
+#include "app/studies/framework/studies.h"
 
 #include <algorithm>
 #include <chrono>
@@ -6,10 +6,10 @@
 #include <limits>
 #include <numbers>
 
+#include "app/studies/framework/query_timing.h"
 #include "app/studies/haptics/bisection.h"
-#include "app/studies/query_timing.h"
-#include "haptics/devices/exact_step.h"
-#include "haptics/servo/snapshot.h"
+#include "haptics/law/snapshot.h"
+#include "haptics/loop_model/zoh_integrator.h"
 
 namespace patina {
 namespace {
@@ -42,7 +42,7 @@ std::shared_ptr<const HapticSnapshot> rubbed(double voxel, double stiffness, dou
                                   sampleFunction([](const Vec3& p) { return p.z(); }, grid, 8))));
 }
 
-// In contact at `tip` from straight above, slowly: a blow would count as a fault.
+// Contact at `tip` from straight above, slowly, because a blow would count as a fault.
 ContactMemory landedAt(const HapticSnapshot& snapshot, const Vec3& tip, double period) {
   constexpr double kSpeed = 0.1; // [m/s]
   ContactMemory memory;
@@ -58,11 +58,11 @@ double nsPerTick(const HapticSnapshot& snapshot, const std::vector<Vec3>& tips, 
                     [&](const Vec3& tip) { return tick(snapshot, memory, tip, period).depth; });
 }
 
-// --- T-K09b: a stroke to and fro takes 4 mu K d (A - mu d).
+// --- T-K09b: a stroke back and forth dissipates 4 mu K d (A - mu d).
 
 constexpr double kSoft = 500, kDeep = 2e-3, kCoefficient = 0.4; // K [N/m], d [m], mu
 
-// Where a cycle's extremes fall between two ticks decides the error, so all phases are tried.
+// The error depends on where the extremes fall between two ticks, so several phases are tried.
 WorkPrecisionRow cycleRow(const HapticSnapshot& snapshot, double rate, double frequency,
                           double amplitude, int phases) {
   const double period = 1 / rate;
@@ -70,7 +70,7 @@ WorkPrecisionRow cycleRow(const HapticSnapshot& snapshot, double rate, double fr
   const int cycle = static_cast<int>(std::lround(rate / frequency));
   std::vector<Vec3> tips;
   WorkPrecisionRow row;
-  row.knobs = {
+  row.settings = {
       {"rate [Hz]", rate}, {"strokes [Hz]", frequency}, {"amplitude [mm]", 1e3 * amplitude}};
   double mean = 0;
   for (int phase = 0; phase < phases; ++phase) {
@@ -120,7 +120,7 @@ WorkPrecisionTable cycles(bool quick, Progress& progress) {
   return table;
 }
 
-// --- T-K09e: a mass dragged by a spring sticks and slips.
+// --- T-K09e: stick-slip of a mass dragged by a spring.
 
 struct Drag {
   double mass = 0.1, spring = 200;       // m [kg], k [N/m]
@@ -137,12 +137,12 @@ double rigidPeriod(const Drag& drag) {
 }
 
 // The same with the surface's own spring and damper. The tip creeps at u until spring and damper
-// reach F_s together; there it yields until the surface alone has given F_s / K; and slips until it
-// stands still. Friction is constant in the last two, so the dragging spring's length is a cosine.
+// together reach F_s; it then yields until the surface alone has given F_s / K, and slips until it
+// stops. Friction is constant in the last two phases, so the dragging spring's length is a cosine.
 double stickSlipPeriod(const Drag& drag) {
   const double k = drag.spring, K = drag.stiffness, V = drag.speed;
   const double w = std::sqrt(k / drag.mass), u = V * k / (k + K);
-  const double left = drag.damping * u / K; // to give when it begins to yield
+  const double left = drag.damping * u / K; // remaining displacement when it begins to yield
   const double yield = bisected(
       0, 1 / w, 1e-12, [&](double t) { return V * t - (V - u) / w * std::sin(w * t) < left; });
   const double A = (drag.most - drag.sliding) / k + (V - u) / w * std::sin(w * yield);
@@ -155,16 +155,16 @@ double stickSlipPeriod(const Drag& drag) {
 }
 
 struct Periods {
-  std::vector<double> lasted; // [s], each
-  double ns = 0;              // of a tick, device included
+  std::vector<double> lasted; // duration of each [s]
+  double ns = 0;              // per tick, device included
 };
 
 Periods stickSlipPeriods(const HapticSnapshot& snapshot, const Drag& drag, double rate,
                          double about, std::size_t count) {
-  constexpr double kBegin = -0.055; // [m], where the field has room for all periods
+  constexpr double kBegin = -0.055; // start [m]; the field has room for all periods
   const double period = 1 / rate;
-  // In the frame of the hand its spring rests, and the step is exact.
-  const ExactStep step({drag.mass, 0, drag.spring, 0}, period);
+  // In the hand's frame the spring is at rest, and the step is exact.
+  const ZohIntegrator step({drag.mass, 0, drag.spring, 0}, period);
   Motion motion{0, -drag.speed};
   ContactMemory memory = landedAt(snapshot, Vec3(kBegin, 0, -drag.depth), period);
   const auto start = std::chrono::steady_clock::now();
@@ -178,7 +178,8 @@ Periods stickSlipPeriods(const HapticSnapshot& snapshot, const Drag& drag, doubl
     const Vec3 tip(kBegin + motion.x + drag.speed * t, 0, -drag.depth);
     motion = step(motion, tick(snapshot, memory, tip, period).force.x());
     if (memory.friction.slipping() && !slipped && (slips == 0 || t - last > 0.3 * about)) {
-      if (++slips > 2) periods.lasted.push_back(t - last); // the first one began otherwise
+      // the first one had other initial conditions
+      if (++slips > 2) periods.lasted.push_back(t - last);
       last = t;
     }
     slipped = memory.friction.slipping();
@@ -188,13 +189,13 @@ Periods stickSlipPeriods(const HapticSnapshot& snapshot, const Drag& drag, doubl
   return periods;
 }
 
-// The loop settles on a whole number of ticks a period: the error is what rounds it, another one
-// at every speed, so several speeds close by are tried.
+// The loop settles on a whole number of ticks per period. This rounding error differs at every
+// speed, so several similar speeds are used.
 WorkPrecisionRow stickSlipRow(const HapticSnapshot& snapshot, Drag drag, double rate) {
   constexpr int kSpeeds = 8;
   const double speed = drag.speed;
   WorkPrecisionRow row;
-  row.knobs = {{"rate [Hz]", rate}, {"speed [m/s]", speed}};
+  row.settings = {{"rate [Hz]", rate}, {"speed [m/s]", speed}};
   row.bytes = static_cast<double>(snapshot.field->bytes());
   row.ns = std::numeric_limits<double>::infinity();
   row.more = {{"closed form [s]", stickSlipPeriod(drag)}, {"rigid [s]", rigidPeriod(drag)}};
@@ -232,7 +233,7 @@ WorkPrecisionTable stickSlip(bool quick, Progress& progress) {
       progress.throwIfCancelled();
       drag.speed = speed;
       table.rows.push_back(stickSlipRow(*snapshot, drag, rate));
-      // In periods, which differ with the speed.
+      // Measured in periods, which depend on the speed.
       order.add(1 / (rate * stickSlipPeriod(drag)), table.rows.back().error);
     }
   order.into(table, 1);
@@ -245,7 +246,7 @@ constexpr double kCircle = 4e-3, kShallow = 1e-3; // [m]
 
 WorkPrecisionRow directionRow(const HapticSnapshot& snapshot, double rate, double speed,
                               double lag) {
-  const double period = 1 / rate, turn = speed / kCircle * period; // [rad] a tick
+  const double period = 1 / rate, turn = speed / kCircle * period; // [rad] per tick
   const auto tipAt = [&](int i) {
     return Vec3(kCircle * std::cos(turn * i), kCircle * std::sin(turn * i), -kShallow);
   };
@@ -253,7 +254,7 @@ WorkPrecisionRow directionRow(const HapticSnapshot& snapshot, double rate, doubl
   ContactMemory memory = landedAt(snapshot, tipAt(0), period);
   std::vector<Vec3> tips;
   WorkPrecisionRow row;
-  row.knobs = {{"rate [Hz]", rate}, {"speed [m/s]", speed}};
+  row.settings = {{"rate [Hz]", rate}, {"speed [m/s]", speed}};
   double mean = 0;
   for (int i = 0; i < settle + count; ++i) {
     const Vec3 tip = tipAt(i);

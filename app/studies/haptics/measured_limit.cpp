@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "app/studies/haptics/bisection.h"
-#include "haptics/contact/plane.h"
+#include "haptics/law/plane.h"
 
 namespace patina {
 namespace {

@@ -1,16 +1,15 @@
-// Where the simulated loop stops settling, found from trajectories alone.
+// Stability limit of the simulated loop, from trajectories alone.
 #pragma once
 
-#include "haptics/devices/simulation.h"
+#include "haptics/simulation/simulation.h"
 #include "scene/haptic_properties.h"
 
 namespace patina {
 
-// The stiffness at which a small oscillation about a pressed equilibrium on the plane stops
-// decaying from the second second to the last, by bisection between `low` (decays) and `high` (does
-// not), to 1e-4 of it. The tip never leaves the wall, so nothing but the loop itself decides: no
-// stabilisers, no limit of the force. haptics.stiffness and depth, press and speed of `spec` are
-// not read.
+// Stiffness at which a small oscillation about a pressed equilibrium on the plane stops decaying
+// between the second second and the last, by bisection between `low` (decays) and `high` (does
+// not), to 1e-4. The tip never leaves the wall and there are no stabilisers and no force limit, so
+// only the loop matters. haptics.stiffness and depth, press and speed of `spec` are ignored.
 double measuredStiffnessLimit(HapticProperties haptics, const SimulationSpec& spec, double low,
                               double high);
 

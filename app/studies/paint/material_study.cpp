@@ -1,19 +1,19 @@
-#include "app/studies/paint/material_study.h"
+#include "app/studies/framework/studies.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "app/studies/framework/query_timing.h"
 #include "app/studies/paint/paint_shapes.h"
-#include "app/studies/query_timing.h"
-#include "session/build/compile_scene.h"
+#include "session/compile/compile_scene.h"
 
 namespace patina {
 namespace {
 
 constexpr double kSide = 0.04, kThickness = 0.01; // [m]
-constexpr double kDeep = 2e-3;                    // [m] of material above and below the top
+constexpr double kDeep = 2e-3; // extent of the material above and below the top [m]
 constexpr double kPeriod = 1e-3;
 constexpr double kPi = std::numbers::pi;
 
@@ -28,7 +28,7 @@ double waved(const Vec3& p) {
   return 600 + 300 * std::sin(2 * kPi * p.x() / 8e-3) * std::cos(2 * kPi * p.y() / 1e-2);
 }
 
-// Stiffness read off the force on the slab, against the function that was painted.
+// Stiffness from the force on the slab, against the painted function.
 WorkPrecisionTable value(const std::vector<double>& voxels, int points, Progress& progress) {
   WorkPrecisionTable table =
       tableOf("Stiffness felt on a painted slab, rms and max; trilinear, order 2", "N/m");
@@ -43,7 +43,7 @@ WorkPrecisionTable value(const std::vector<double>& voxels, int points, Progress
       std::uniform_real_distribution<double> place(-0.3 * kSide, 0.3 * kSide);
       std::vector<Vec3> tips;
       WorkPrecisionRow row;
-      row.knobs = {{"painted", painted}, {"voxel [mm]", 1e3 * voxel}};
+      row.settings = {{"painted", painted}, {"voxel [mm]", 1e3 * voxel}};
       for (int i = 0; i < points; ++i) {
         tips.emplace_back(place(random), place(random), -1e-3);
         ContactMemory memory;
@@ -70,7 +70,7 @@ WorkPrecisionTable value(const std::vector<double>& voxels, int points, Progress
   return table;
 }
 
-// Down on the soft side, across, up on the hard one and back above: what the hand is given [J].
+// Energy given to the hand [J]: down on the soft side, across, up on the hard one and back above.
 double loopWork(const HapticSnapshot& snapshot, double across, double depth) {
   constexpr int kSteps = 4000;
   const Vec3 corners[]{{-across, 0, 1e-3},
@@ -95,7 +95,7 @@ double loopWork(const HapticSnapshot& snapshot, double across, double depth) {
   return work;
 }
 
-// T-K22d. The error is the distance from what the form claims: 1/2 (K2 - K1) d^2, or nothing.
+// T-K22d. The error is the distance from the form's theory: 1/2 (K2 - K1) d^2, or zero.
 WorkPrecisionTable energy(const std::vector<double>& voxels, Progress& progress) {
   constexpr double kSoft = 200, kHard = 1000, kDepth = 1.5e-3, kAcross = 8e-3;
   const double given = 0.5 * (kHard - kSoft) * kDepth * kDepth;
@@ -113,7 +113,7 @@ WorkPrecisionTable energy(const std::vector<double>& voxels, Progress& progress)
       const auto compiled = compile(scene, progress);
       WorkPrecisionRow row;
       const bool literal = form == ForceForm::literal;
-      row.knobs = {{"form", literal ? "literal" : "conservative"}, {"voxel [mm]", 1e3 * voxel}};
+      row.settings = {{"form", literal ? "literal" : "conservative"}, {"voxel [mm]", 1e3 * voxel}};
       std::vector<Vec3> tips;
       for (int i = 0; i < 400; ++i) tips.emplace_back(-kAcross + 4e-5 * i, 0, -kDepth);
       const double work = loopWork(*compiled->snapshot, kAcross, kDepth);

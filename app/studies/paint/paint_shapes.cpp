@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "geometry/mesh/shapes.h"
-#include "session/build/session.h"
+#include "session/open/session.h"
 
 namespace patina {
 namespace {

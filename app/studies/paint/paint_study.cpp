@@ -1,4 +1,4 @@
-#include "app/studies/paint/paint_study.h"
+#include "app/studies/framework/studies.h"
 
 #include <algorithm>
 #include <chrono>
@@ -6,17 +6,17 @@
 #include <numbers>
 #include <random>
 
+#include "app/studies/framework/query_timing.h"
 #include "app/studies/paint/paint_shapes.h"
-#include "app/studies/query_timing.h"
 #include "geometry/mesh/shapes.h"
-#include "session/build/compile_scene.h"
-#include "session/build/session.h"
+#include "session/compile/compile_scene.h"
+#include "session/open/session.h"
 #include "session/store/replay.h"
 
 namespace patina {
 namespace {
 
-constexpr double kSide = 0.04;      // [m] of the slab
+constexpr double kSide = 0.04;      // side of the slab [m]
 constexpr double kThickness = 0.01; // [m]
 constexpr double kPeriod = 1e-3;    // [s]
 constexpr double kPi = std::numbers::pi;
@@ -25,12 +25,12 @@ double secondsSince(const std::chrono::steady_clock::time_point& start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// --- K17: what a brush covers
+// --- K17: coverage of a brush
 
 struct WeightForm {
   BrushShape shape;
   const char* name;
-  double (*share)(double falloff); // integral of w over the disc, of pi r^2
+  double (*share)(double falloff); // integral of w over the disc, divided by pi r^2
 };
 
 constexpr WeightForm kForms[]{
@@ -67,7 +67,7 @@ WorkPrecisionTable coverage(const std::vector<int>& sizes, int dabs, Progress& p
         std::mt19937 random(3);
         std::uniform_real_distribution<double> place(-0.3 * kSide, 0.3 * kSide);
         WorkPrecisionRow row;
-        row.knobs = {{"image", size}, {"shape", form.name}, {"falloff", falloff}};
+        row.settings = {{"image", size}, {"shape", form.name}, {"falloff", falloff}};
         PaintReport report;
         double took = 0;
         for (int i = 0; i < dabs; ++i) {
@@ -96,13 +96,13 @@ WorkPrecisionTable coverage(const std::vector<int>& sizes, int dabs, Progress& p
 // --- F8: height and slope of a cosine
 
 struct Felt {
-  double height_rms = 0, height_max = 0; // of the amplitude
-  double crest = 0;                      // height lost at the crests, of the amplitude: the worst
-  double slope_rms = 0;                  // of the steepest slope
+  double height_rms = 0, height_max = 0; // fractions of the amplitude
+  double crest = 0;                      // max loss of height at crests, fraction of the amplitude
+  double slope_rms = 0;                  // fraction of the max slope
   double ns = 0;
 };
 
-// Where a tip that comes down touches [m].
+// Height at which a descending tip touches [m].
 double touchedAt(const HapticSnapshot& snapshot, double x, double y, double reach) {
   double low = -reach, high = reach;
   for (int i = 0; i < 40; ++i) {
@@ -120,7 +120,7 @@ Felt felt(const HapticSnapshot& snapshot, double amplitude, double wavelength, i
   Felt result;
   std::vector<Vec3> tips;
   for (int i = 0; i < points; ++i) {
-    // Every fourth one on a crest.
+    // Every fourth point is on a crest.
     double x = place(random);
     const bool crest = i % 4 == 0;
     if (crest) x = wavelength * std::round(x / wavelength);
@@ -165,11 +165,11 @@ struct Reading {
   const char* name;
   ReliefMode mode;
   Sampler sampler;
-  int texels; // at least so many a wavelength
+  int texels; // min texels per wavelength
 };
 
-// A cosine by its wavelength. Texels of the baked image are so fine that only the grid's error is
-// left.
+// A cosine by its wavelength. The baked image's texels are so fine that only the grid's error
+// remains.
 WorkPrecisionTable wavelengths(const Reading& reading, const std::vector<double>& voxels,
                                int resolution, int points, Progress& progress) {
   const bool kim = reading.mode == ReliefMode::baked && reading.sampler == Sampler::kim;
@@ -186,7 +186,7 @@ WorkPrecisionTable wavelengths(const Reading& reading, const std::vector<double>
     const double wavelength = count * *scene.field.voxel;
     const double amplitude = 0.02 * wavelength;
     int size = 64;
-    while (size < reading.texels * kSide / wavelength && size < kMostImage) size *= 2;
+    while (size < reading.texels * kSide / wavelength && size < kMaxImage) size *= 2;
     layRelief(scene, kSide, size,
               [&](double x, double) { return std::cos(2 * kPi * x / wavelength); });
     scene.relief.height = amplitude;
@@ -194,9 +194,9 @@ WorkPrecisionTable wavelengths(const Reading& reading, const std::vector<double>
     const auto compiled = compile(scene, progress);
     WorkPrecisionRow row =
         reliefRow(felt(*compiled->snapshot, amplitude, wavelength, points), *compiled);
-    row.knobs = {{"relief", reading.name},
-                 {"voxels a wavelength", count},
-                 {"texels a wavelength", size * wavelength / kSide}};
+    row.settings = {{"relief", reading.name},
+                    {"voxels a wavelength", count},
+                    {"texels a wavelength", size * wavelength / kSide}};
     if (kim) {
       row.more.emplace_back("lost by theory [%]", 100 * (1 - std::cos(kPi / count)));
       if (count >= 8) order.add(1 / count, row.error);
@@ -221,7 +221,7 @@ WorkPrecisionTable texels(const std::vector<int>& sizes, int points, Progress& p
     const auto compiled = compile(scene, progress);
     WorkPrecisionRow row =
         reliefRow(felt(*compiled->snapshot, amplitude, wavelength, points), *compiled);
-    row.knobs = {{"texels a wavelength", size * wavelength / kSide}};
+    row.settings = {{"texels a wavelength", size * wavelength / kSide}};
     order.add(1.0 / size, row.error);
     table.rows.push_back(std::move(row));
   }
@@ -229,7 +229,7 @@ WorkPrecisionTable texels(const std::vector<int>& sizes, int points, Progress& p
   return table;
 }
 
-// --- T-K21a: a raised sphere, baked whole
+// --- T-K21a: a raised sphere, fully baked
 
 WorkPrecisionTable raised(const std::vector<int>& resolutions, int points, Progress& progress) {
   constexpr double kRadius = 0.03, kHeight = 1e-3;
@@ -251,7 +251,7 @@ WorkPrecisionTable raised(const std::vector<int>& resolutions, int points, Progr
       scene.objects[0].paint = std::make_shared<const ObjectPaint>(std::move(paint));
       const auto compiled = compile(scene, progress);
       WorkPrecisionRow row;
-      row.knobs = {{"resolution", resolution}, {"image", size}};
+      row.settings = {{"resolution", resolution}, {"image", size}};
       std::mt19937 random(11);
       std::normal_distribution<double> normal;
       for (int i = 0; i < points; ++i) {
@@ -266,8 +266,8 @@ WorkPrecisionTable raised(const std::vector<int>& resolutions, int points, Progr
         row.error += error / points;
         row.error_max = std::max(row.error_max, error);
       }
-      const ReliefSource source{0, static_cast<std::int32_t>(compiled->mesh->triangles.size()),
-                                scene.objects[0].paint->layout.uvs, image, kHeight};
+      const ReliefInput source{0, static_cast<std::int32_t>(compiled->mesh->triangles.size()),
+                               scene.objects[0].paint->layout.uvs, image, kHeight};
       double best = std::numeric_limits<double>::infinity();
       for (int pass = 0; pass < 5; ++pass) {
         const auto start = std::chrono::steady_clock::now();

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <utility>
 
-#include "acquisition/vision_library.h"
+#include "acquisition/loaded/vision_library.h"
 #include "core/decompose.h"
 #include "core/error.h"
 #include "core/numbers.h"
@@ -12,8 +14,8 @@
 namespace patina {
 namespace {
 
-constexpr int kQuickSide = 960;           // of the picture that a quick search looks at [px]
-constexpr std::size_t kFewestCorners = 6; // corners of a view that is of use
+constexpr int kQuickSide = 960;        // longest side of the picture in a quick search [px]
+constexpr std::size_t kMinCorners = 6; // corners of a usable view
 
 std::vector<std::string> partsOf(const std::string& text, char between) {
   std::vector<std::string> parts(1);
@@ -25,7 +27,7 @@ std::vector<std::string> partsOf(const std::string& text, char between) {
   return parts;
 }
 
-// From the board to the picture, by least squares over four points or more, both brought near 1.
+// Returns the normalised least-squares homography (Hartley 1997) of four or more points.
 Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec2>& pixel) {
   const auto near = [](const std::vector<Vec2>& points) {
     Vec2 middle = Vec2::Zero();
@@ -37,7 +39,7 @@ Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec
     return m;
   };
   const Eigen::Matrix3d from = near(board), to = near(pixel);
-  // Its last number is 1: the middle of the points is not at infinity.
+  // The last element is 1, because the centroid of the points is not at infinity.
   Eigen::Matrix<double, 8, 8> squares = Eigen::Matrix<double, 8, 8>::Zero();
   Eigen::Matrix<double, 8, 1> right = Eigen::Matrix<double, 8, 1>::Zero();
   for (std::size_t i = 0; i < board.size(); ++i) {
@@ -57,7 +59,7 @@ Eigen::Matrix3d homography(const std::vector<Vec2>& board, const std::vector<Vec
   return to.inverse() * m * from;
 }
 
-// Means of squares of `cells` pixels a side.
+// Returns the picture with each square of `cells` pixels a side replaced by its mean.
 GreyFrame shrunk(const GreyFrame& image, int cells) {
   GreyFrame small{image.width / cells, image.height / cells, {}};
   for (int y = 0; y < small.height; ++y)
@@ -71,7 +73,7 @@ GreyFrame shrunk(const GreyFrame& image, int cells) {
 }
 
 std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board, bool quick) {
-  // Corners are looked for to a pixel of what is searched, and then found anew.
+  // Corners are found to a pixel of the searched picture and then refined in the full one.
   const int cells = quick ? 1 + std::max(image.width, image.height) / kQuickSide : 1;
   const GreyFrame smaller = cells > 1 ? shrunk(image, cells) : GreyFrame();
   std::vector<Vec2> found;
@@ -88,7 +90,7 @@ std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board
       for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}})
         if (x + dx >= 0 && x + dx < board.columns && y + dy >= 0 && y + dy < board.rows)
           cell = std::min(cell, (found[index((y + dy) * board.columns + x + dx)] - at).norm());
-      const auto saddle = saddleNear(image, at, cell);
+      const auto saddle = refineSaddle(image, at, cell);
       if (!saddle) continue;
       view.board.emplace_back(board.square * x, board.square * y);
       view.pixel.push_back(*saddle);
@@ -96,8 +98,7 @@ std::optional<BoardView> chessboardIn(const GreyFrame& image, const Board& board
   return view;
 }
 
-// Returns the places of the board's markers, top left first, for a white or a black top left
-// square.
+// Returns the board's marker corners, top left first, for a white or a black top left square.
 std::vector<Quad> markersOn(const Board& board, bool white_first) {
   std::vector<Quad> places;
   for (int y = 0; y < board.rows; ++y)
@@ -121,8 +122,8 @@ BoardView markersSeen(const std::vector<SeenMarker>& seen, const std::vector<Qua
   return view;
 }
 
-// Returns the mean square by which the view's homography misses its corners [px^2].
-double missOf(const BoardView& view) {
+// Returns the mean squared reprojection error of the view's homography [px^2].
+double reprojectionError(const BoardView& view) {
   const Eigen::Matrix3d map = homography(view.board, view.pixel);
   double squares = 0;
   for (std::size_t i = 0; i < view.board.size(); ++i)
@@ -139,15 +140,15 @@ std::optional<BoardView> charucoIn(const GreyFrame& image, const Board& board) {
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<int>(i);
   const auto seen = findMarkers(image, {CodeBook(family, ids)}, nullptr);
   BoardView markers = markersSeen(seen, markersOn(board, false)), view;
-  // The other layout has every other row a square further, which no homography maps. The markers of
-  // one row fit both layouts, and then only the board lies a square further.
+  // The other layout shifts every other row by a square, which no homography does. The markers of a
+  // single row fit both layouts, which then differ by a shift of the board by one square.
   if (board.rows % 2 == 0 && seen.size() > 1)
     if (BoardView other = markersSeen(seen, markersOn(board, true));
-        missOf(other) < missOf(markers))
+        reprojectionError(other) < reprojectionError(markers))
       markers = std::move(other);
   for (int y = 1; y < board.rows; ++y)
     for (int x = 1; x < board.columns; ++x) {
-      // From the corners near by only: the lens bends the rest.
+      // Only the nearest corners are used, because of the lens's distortion.
       const Vec2 corner(board.square * x, board.square * y);
       std::vector<Vec2> near, pixel;
       for (std::size_t i = 0; i < markers.board.size(); ++i)
@@ -162,8 +163,8 @@ std::optional<BoardView> charucoIn(const GreyFrame& image, const Board& board) {
       double cell = INFINITY;
       for (const Vec2& step : {Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)})
         cell = std::min(cell, (at(corner + board.square * step) - guess).norm());
-      // The markers beside it must stay outside of what is looked at.
-      const auto saddle = saddleNear(image, guess, cell * (1 - board.marker / board.square));
+      // The neighbouring markers must lie outside the refinement window.
+      const auto saddle = refineSaddle(image, guess, cell * (1 - board.marker / board.square));
       if (!saddle) continue;
       view.board.push_back(corner);
       view.pixel.push_back(*saddle);
@@ -174,48 +175,71 @@ std::optional<BoardView> charucoIn(const GreyFrame& image, const Board& board) {
 } // namespace
 
 std::array<Vec2, 4> outlineOf(const BoardView& view, const Board& board) {
-  const Eigen::Matrix3d map = homography(view.board, view.pixel);
+  const Eigen::Matrix3d map = homographyOf(view);
   const double wide = board.square * board.columns, high = board.square * board.rows;
   std::array<Vec2, 4> outline{Vec2(0, 0), Vec2(wide, 0), Vec2(wide, high), Vec2(0, high)};
   for (Vec2& corner : outline) corner = (map * corner.homogeneous()).hnormalized();
   return outline;
 }
 
-double sharpnessOf(const GreyFrame& image, const BoardView& view) {
-  constexpr int kReach = 4;
-  std::vector<double> each;
-  for (const Vec2& corner : view.pixel) {
-    const int left = static_cast<int>(corner.x()) - kReach,
-              top = static_cast<int>(corner.y()) - kReach, size = 2 * kReach + 1;
-    if (left < 1 || top < 1 || left + size >= image.width || top + size >= image.height) continue;
-    Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-    double darkest = 255, brightest = 0;
-    for (int y = top; y < top + size; ++y)
-      for (int x = left; x < left + size; ++x) {
-        const auto grey = [&](int column, int row) {
-          return static_cast<double>(image.row(row)[column]);
-        };
-        const Vec2 slope(grey(x + 1, y) - grey(x - 1, y), grey(x, y + 1) - grey(x, y - 1));
-        squares += slope * slope.transpose();
-        darkest = std::min(darkest, grey(x, y));
-        brightest = std::max(brightest, grey(x, y));
-      }
-    const double half = squares.trace() / 2,
-                 least = half - std::sqrt(std::max(0., half * half - squares.determinant()));
-    each.push_back(least / std::max(1., (brightest - darkest) * (brightest - darkest)));
-  }
-  if (each.empty()) return 0;
-  const auto middle = each.begin() + static_cast<std::ptrdiff_t>(each.size() / 2);
-  std::nth_element(each.begin(), middle, each.end());
-  return *middle;
+Eigen::Matrix3d homographyOf(const BoardView& view) {
+  return homography(view.board, view.pixel);
 }
 
-std::optional<Vec2> saddleNear(const GreyFrame& image, const Vec2& corner, double cell) {
+double blurOf(const GreyFrame& image, const BoardView& view, const Board& board) {
+  const auto cellOf = [&](std::size_t i) -> std::pair<long, long> {
+    const Vec2 cell = view.board[i] / board.square;
+    return {std::lround(cell.x()), std::lround(cell.y())};
+  };
+  std::map<std::pair<long, long>, std::size_t> corners;
+  for (std::size_t i = 0; i < view.board.size(); ++i) corners[cellOf(i)] = i;
+  // An edge of black and white runs between neighbouring corners.
+  std::array<std::vector<double>, 2> slopes; // the steepest of each edge, by the edges' direction
+  std::vector<double> greys;
+  for (const auto& [cell, i] : corners)
+    for (std::size_t along = 0; along < 2; ++along) {
+      const auto next = corners.find({cell.first + (along == 0), cell.second + (along == 1)});
+      if (next == corners.end()) continue;
+      const Vec2 edge = view.pixel[next->second] - view.pixel[i];
+      const Vec2 across = Vec2(-edge.y(), edge.x()).normalized();
+      const int reach = static_cast<int>(2 * std::clamp(0.3 * edge.norm(), 2., 10.)); // half pixels
+      std::vector<double> profile;
+      for (int k = -reach; k <= reach; ++k) {
+        double sum = 0;
+        for (const double share : {0.3, 0.4, 0.5, 0.6, 0.7}) {
+          const Vec2 p = view.pixel[i] + share * edge + 0.5 * k * across;
+          sum += greyAt(image, p.x(), p.y()).value_or(NAN) / 5;
+        }
+        profile.push_back(sum);
+      }
+      double steepest = 0;
+      for (std::size_t k = 0; k + 2 < profile.size(); ++k)
+        steepest = std::max(steepest, std::abs(profile[k + 2] - profile[k]));
+      if (std::isnan(profile.front()) || std::isnan(profile.back())) continue;
+      slopes[along].push_back(steepest);
+      greys.insert(greys.end(), profile.begin(), profile.end());
+    }
+  const auto quantile = [](std::vector<double>& values, double share) {
+    const auto place = values.begin() +
+                       static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+  };
+  double steepest = INFINITY;
+  for (std::vector<double>& each : slopes)
+    if (!each.empty()) steepest = std::min(steepest, quantile(each, 0.5));
+  if (greys.empty()) return INFINITY;
+  // The slope of a Gaussian edge is its contrast over sqrt(2 pi) deviations.
+  return (quantile(greys, 0.95) - quantile(greys, 0.05)) /
+         (std::sqrt(2 * std::numbers::pi) * std::max(steepest, 1e-3));
+}
+
+std::optional<Vec2> refineSaddle(const GreyFrame& image, const Vec2& corner, double cell) {
   const double reach = std::clamp(0.45 * cell, 2., 8.);
   Vec2 at = corner;
   for (int round = 0; round < 30; ++round) {
-    // Along every edge through the saddle the slope of grey stands at right angles to the way
-    // there.
+    // Grey gradients on the edges are orthogonal to the saddle's direction (Foerstner & Guelch
+    // 1987).
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
     Vec2 sum = Vec2::Zero();
     const int steps = static_cast<int>(std::ceil(reach));
@@ -271,7 +295,7 @@ Board parseBoard(const std::string& text) {
 
 std::optional<BoardView> findBoard(const GreyFrame& image, const Board& board, bool quick) {
   auto view = board.family.empty() ? chessboardIn(image, board, quick) : charucoIn(image, board);
-  if (view && view->pixel.size() < kFewestCorners) view.reset();
+  if (view && view->pixel.size() < kMinCorners) view.reset();
   return view;
 }
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "acquisition/files/camera_file.h"
-#include "acquisition/orientation.h"
-#include "acquisition/vision_library.h"
+#include "acquisition/loaded/vision_library.h"
+#include "acquisition/values/orientation.h"
 #include "core/error.h"
 #include "core/json.h"
 #include "core/numbers.h"
@@ -14,20 +14,13 @@
 namespace patina {
 namespace {
 
-constexpr double kWorstTip = 1e-3; // standard deviation of what is no tip [m]
-constexpr double kWorstRms = 1.5;  // of what is no calibration [px]
-constexpr std::size_t kMostViews = 60, kMostLooks = 240;
-constexpr double kLookStep = 0.1;  // between looks at frames whose number nobody knows [s]
-constexpr double kSameView = 0.01; // views closer than this [diagonals] tell the same
-constexpr double kNewView = 0.03;  // what a live source is waited for
+constexpr double kWorstTip = 1e-3; // largest accepted standard deviation of the tip [m]
+constexpr double kWorstRms = 1.5;  // largest accepted reprojection error [px]
+constexpr std::size_t kMaxViews = BoardGuide::kMaxViews, kMaxLooks = 240;
+constexpr double kLookStep = 0.1;  // time between searched frames if their number is unknown [s]
+constexpr double kSameView = 0.01; // views closer than this are redundant [diagonals]
 constexpr double kTimeWeight = 0.05;
-constexpr double kBlurred = 0.5; // of the sharpness of sharp views
-
-double apart(const std::array<Vec2, 4>& a, const std::array<Vec2, 4>& b, double diagonal) {
-  double squares = 0;
-  for (std::size_t i = 0; i < 4; ++i) squares += (a[i] - b[i]).squaredNorm() / 4;
-  return std::sqrt(squares) / diagonal;
-}
+constexpr double kBlurred = 2; // largest blur relative to sharp views
 
 std::optional<BoardView> boardIn(const GreyFrame& image, const Board& board, bool quick,
                                  const std::string& name) try {
@@ -40,13 +33,13 @@ std::optional<BoardView> boardIn(const GreyFrame& image, const Board& board, boo
 
 struct SeenView {
   BoardView view;
-  GreyFrame size; // without pixels
+  GreyFrame size; // size only, without pixels
 };
 
-// Pictures are of one size, either as they are shown or as they are stored.
+// Checks that all pictures have one size, either as shown or as stored.
 struct Sizes {
-  GreyFrame first; // without pixels
-  bool alike = true, shown = true, stored = true;
+  GreyFrame first; // size only, without pixels
+  bool same = true, shown = true, stored = true;
 
   double diagonal() const { return std::hypot(first.width, first.height); }
   void add(const GreyFrame& size, const std::string& name) {
@@ -55,21 +48,21 @@ struct Sizes {
       return size.width == (across ? first.height : first.width) &&
              size.height == (across ? first.width : first.height);
     };
-    alike = alike && size.orientation == first.orientation;
+    same = same && size.orientation == first.orientation;
     shown = shown && isLike(false);
     stored = stored && isLike(isTransposed(size.orientation) != isTransposed(first.orientation));
     if (!shown && !stored) throw FileError(name, 0, "is of another size than the views before it");
   }
 };
 
-// True where views that are turned in several ways are those of a camera that was held in several
-// ways, false where they fit better as they are shown.
+// Fits a camera to the views. Returns true if views of several orientations fit better as pictures
+// of a camera that was held in several ways than as they are shown.
 bool fitViews(const std::vector<SeenView>& views, const Sizes& sizes, CameraFit& best,
               const std::string& from) {
   best.rms = INFINITY;
   bool held = false;
   for (const bool as_held : {false, true}) {
-    if (as_held ? !sizes.stored || sizes.alike : !sizes.shown) continue;
+    if (as_held ? !sizes.stored || sizes.same : !sizes.shown) continue;
     CameraFit fit;
     fit.camera.width = sizes.first.width;
     fit.camera.height = sizes.first.height;
@@ -99,25 +92,25 @@ std::vector<std::size_t> chooseViews(const std::vector<ViewChoice>& views, doubl
                                      std::size_t most) {
   std::vector<std::size_t> chosen;
   if (views.empty()) return chosen;
-  std::vector<double> sharp;
-  for (const ViewChoice& view : views) sharp.push_back(view.sharpness);
-  const auto ninth = sharp.begin() + static_cast<std::ptrdiff_t>(9 * (sharp.size() - 1) / 10);
-  std::nth_element(sharp.begin(), ninth, sharp.end());
-  const double least = kBlurred * *ninth;
+  std::vector<double> blurs;
+  for (const ViewChoice& view : views) blurs.push_back(view.blur);
+  const auto tenth = blurs.begin() + static_cast<std::ptrdiff_t>((blurs.size() - 1) / 10);
+  std::nth_element(blurs.begin(), tenth, blurs.end());
+  const double max_blur = kBlurred * *tenth;
   const double lasts = std::max(1e-9, views.back().t - views.front().t);
-  std::vector<double> far(views.size(), INFINITY), unlike = far; // from what was chosen
+  std::vector<double> far(views.size(), INFINITY), unlike = far; // distance to the chosen views
   std::size_t next = 0;
   for (std::size_t i = 1; i < views.size(); ++i)
-    if (views[i].sharpness > views[next].sharpness) next = i;
+    if (views[i].blur < views[next].blur) next = i;
   for (bool more = true; more && chosen.size() < most;) {
     chosen.push_back(next);
     const ViewChoice& last = views[next];
     more = false;
     for (std::size_t i = 0; i < views.size(); ++i) {
-      const double apart_now = apart(views[i].outline, last.outline, diagonal);
+      const double apart_now = distanceOf(views[i].outline, last.outline) / diagonal;
       unlike[i] = std::min(unlike[i], apart_now);
       far[i] = std::min(far[i], apart_now + kTimeWeight * std::abs(views[i].t - last.t) / lasts);
-      if (views[i].sharpness < least || unlike[i] <= kSameView) continue;
+      if (views[i].blur > max_blur || unlike[i] <= kSameView) continue;
       if (!more || far[i] > far[next]) next = i;
       more = true;
     }
@@ -126,19 +119,21 @@ std::vector<std::size_t> chooseViews(const std::vector<ViewChoice>& views, doubl
   return chosen;
 }
 
-CalibratedCamera calibrateCamera(FrameSource& frames, const Board& board,
-                                 const std::string& board_text, const std::string& from,
-                                 Progress& progress, const BoardSeen& seen) {
+CalibratedCamera fitCameraToFrames(FrameSource& frames, const Board& board,
+                                   const std::string& board_text, const std::string& from,
+                                   Progress& progress, const BoardSeen& seen) {
   CalibratedCamera found;
-  std::vector<SeenView> views;
-  std::vector<ViewChoice> choices, kept; // kept: that a live source was waited for
+  std::vector<SeenView> views, rejected; // the latter: live, blurred or like another
+  std::vector<ViewChoice> choices;
+  BoardGuide guide; // used for a live source
   Sizes sizes;
   TurnedFrames turns;
   std::string fault;
   std::size_t faults = 0;
   const bool pictures = frames.arePictures();
   const std::optional<std::size_t> count = frames.count();
-  const std::size_t step = pictures || !count ? 1 : std::max<std::size_t>(1, *count / kMostLooks);
+  const std::size_t step = pictures || !count ? 1 : std::max<std::size_t>(1, *count / kMaxLooks);
+  std::size_t with_board = 0;
   double last = -INFINITY;
   while (std::optional<SourceFrame> frame = frames.next()) {
     if (progress.cancelled() && frames.isLive()) break;
@@ -152,68 +147,81 @@ CalibratedCamera calibrateCamera(FrameSource& frames, const Board& board,
     if (!pictures && (count ? i % step != 0 : frame->t < last + kLookStep)) continue;
     last = frame->t;
     const GreyFrame& image = frame->image;
-    const double share = count             ? static_cast<double>(i) / static_cast<double>(*count)
-                         : frames.isLive() ? static_cast<double>(kept.size()) / kMostViews
-                                           : 0;
-    progress.report(0.8 * std::min(1., share), frames.isLive() ? formatCount(kept.size()) + " of " +
-                                                                     formatCount(kMostViews) +
-                                                                     " views that differ"
-                                                               : "views");
     const GreyFrame size{image.width, image.height, {}, image.orientation};
     sizes.add(size, frame->name);
     turns.add(image, frame->name);
     const auto view = boardIn(image, board, !pictures, frame->name);
-    if (seen) seen(i, view);
+    const bool is_new = frames.isLive() && addPicture(guide, image, view, board);
+    if (frames.isLive())
+      progress.report(0.8 * static_cast<double>(guide.seenCells() + guide.seenTilts()) /
+                          static_cast<double>(guide.seen.size() + guide.tilted.size()),
+                      guide.advice + ", " + formatCount(guide.views.size()) + " views");
+    else
+      progress.report(count ? 0.8 * static_cast<double>(i) / static_cast<double>(*count) : 0,
+                      "views");
+    if (seen) seen({i, image, view, guide});
     if (!view) {
       if (found.first_rejected.empty()) found.first_rejected = frame->name;
       found.rejected.push_back(i);
       continue;
     }
+    ++with_board;
+    if (frames.isLive() && !is_new) {
+      if (rejected.size() < kMaxViews) rejected.push_back({*view, size});
+      continue;
+    }
     views.push_back({*view, size});
-    if (pictures) continue;
-    choices.push_back({outlineOf(*view, board), sharpnessOf(image, *view), frame->t});
-    if (!frames.isLive()) continue;
-    const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const ViewChoice& before) {
-      return apart(before.outline, choices.back().outline, sizes.diagonal()) > kNewView;
-    });
-    if (is_new) kept.push_back(choices.back());
-    if (kept.size() == kMostViews) break;
+    if (guide.complete) break;
+    if (!pictures && !frames.isLive())
+      choices.push_back({outlineOf(*view, board), blurOf(image, *view, board), frame->t});
   }
   found.notes = frames.notes();
   if (faults > 0)
     found.notes.push_back(formatCount(faults) + " of " + formatCount(found.frames) +
                           " frames cannot be read; the first: " + fault);
-  const std::size_t with_board = views.size();
-  if (!pictures) {
+  if (frames.isLive() && !guide.complete)
+    found.notes.push_back(from + ": ended with " + guide.summary() + "; next was: " + guide.advice);
+  if (!choices.empty()) {
     std::vector<SeenView> chosen;
-    for (const std::size_t i : chooseViews(choices, sizes.diagonal(), kMostViews))
+    for (const std::size_t i : chooseViews(choices, sizes.diagonal(), kMaxViews))
       chosen.push_back(std::move(views[i]));
     views = std::move(chosen);
   }
   found.views = views.size();
   found.unlike = with_board - views.size();
-  if (views.size() < 3)
+  const auto doubtful = [&] {
+    return from + ": corners miss by " + formatNumber(std::round(10 * found.fit.rms) / 10) +
+           " px, which is no calibration; is it " + board_text +
+           " that the pictures show? Look at the number of its squares, their size and the "
+           "markers', the family of markers, their layout (from 0 on by rows), and whether it is "
+           "flat";
+  };
+  if (views.size() < 3) {
+    // Corners of another board look blurred: a fit tells it from one that is held too still.
+    views.insert(views.end(), rejected.begin(), rejected.end());
+    if (views.size() >= 3) {
+      fitViews(views, sizes, found.fit, from);
+      if (found.fit.rms > kWorstRms) {
+        found.doubt = doubtful();
+        return found;
+      }
+    }
     throw FileError(from, 0,
                     "the board " + board_text + " is seen in " + formatCount(with_board) + " of " +
                         formatCount(found.frames) + " views" +
                         (found.unlike > 0
-                             ? ", of which " + formatCount(views.size()) + " are sharp and differ"
+                             ? ", of which " + formatCount(found.views) + " are sharp and differ"
                              : "") +
                         "; three at least are needed");
+  }
   progress.report(0.8, "camera");
   const bool held = fitViews(views, sizes, found.fit, from);
   if (const std::string line = turns.line(
-          nullptr, held
-                       ? "the camera was held in several ways, and its pixels count as in the first"
-                       : "all count as they are shown");
+          nullptr, held ? "the camera was turned between pictures; pixels are those of the first"
+                        : "all are used as they are shown");
       !line.empty())
     found.notes.push_back(line);
-  if (found.fit.rms > kWorstRms)
-    found.doubt = from + ": corners miss by " + formatNumber(std::round(10 * found.fit.rms) / 10) +
-                  " px, which is no calibration; is it " + board_text +
-                  " that the pictures show? Look at the number of its squares, their size and the "
-                  "markers', the family of markers, their layout (from 0 on by rows), and whether "
-                  "it is flat";
+  if (found.fit.rms > kWorstRms) found.doubt = doubtful();
   return found;
 }
 
@@ -226,24 +234,27 @@ std::string calibratedText(const CameraFit& fit, const std::string& board_text) 
   return cameraText(fit.camera, lines + " ]\n");
 }
 
-PivotFit tipOf(const std::vector<CameraPose>& poses, const std::string& from) {
+PivotFit calibratePivot(const std::vector<CameraPose>& poses, const std::string& from) {
   const auto fit = fitPivot(poses);
   if (!fit)
-    throw FileError(from, 0,
-                    "the poses do not tell the tip: ten at least, turned to all sides about a "
-                    "point that stands still");
+    throw FileError(
+        from, 0,
+        "the poses do not determine the tip: take at least ten, tilted to all sides about a "
+        "fixed point");
   const double deviation = std::sqrt(fit->covariance.diagonal().maxCoeff());
   if (deviation > kWorstTip)
     throw FileError(from, 0,
-                    "the poses tell the tip to " + formatLength(deviation) +
-                        " only: it must stand still while the probe turns about it to all sides");
+                    "the poses determine the tip only to " + formatLength(deviation) +
+                        ": keep it fixed and tilt the probe about it to all sides");
   return *fit;
 }
 
-std::string rigWithTip(const std::string& text, const std::string& name, const PivotFit& fit) {
+std::string withTip(const std::string& text, const std::string& name, const PivotFit& fit) {
   Json rig = parseJson(text, name);
   if (!rig.isObject()) throw FileError(name, 0, "is no object");
-  rig.set("tip", Json(Json::Array{fit.tip.x(), fit.tip.y(), fit.tip.z()}));
+  const Vec3 deviation = fit.covariance.diagonal().cwiseSqrt();
+  const auto array = [](const Vec3& v) { return Json(Json::Array{v.x(), v.y(), v.z()}); };
+  rig.set("tip", array(fit.tip)).set("tip_deviation", array(deviation));
   return rig.dump() + "\n";
 }
 

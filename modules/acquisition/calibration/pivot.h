@@ -1,23 +1,23 @@
-// Where a probe's tip is, from poses while it turns about a point that stands still (A05).
+// Pivot calibration: finds a probe's tip from poses in which it rotates about a fixed point (A05).
 #pragma once
 
 #include <optional>
 
-#include "acquisition/scan_samples.h"
+#include "acquisition/values/scan_samples.h"
 
 namespace patina {
 
 struct PivotFit {
   Vec3 tip = Vec3::Zero();                              // in the probe's frame [m]
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(); // of it [m^2]
-  Vec3 point = Vec3::Zero();                            // where it stood, in the camera's frame [m]
-  double rms = 0;           // of what was used, of the distance from the point [m]
-  std::size_t rejected = 0; // poses that contradict the others
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(); // covariance of the tip [m^2]
+  Vec3 point = Vec3::Zero();                            // fixed point in the camera's frame [m]
+  double rms = 0;           // distance of the tips used from the point [m]
+  std::size_t rejected = 0; // outliers
 };
 
-// Poses count by their own deviations, whose ratio matters and not their size: what the angle
-// leaves open grows with the tip's distance. Robust against a third of wrong poses. Nothing with
-// fewer than ten poses, or where they turn too little about two axes to tell the tip.
+// Robust fit with Tukey's biweight (Beaton & Tukey 1974); up to a third of the poses may be wrong.
+// Poses are weighted by their own deviations, of which only the ratios matter. Returns nullopt for
+// fewer than ten poses, or if they rotate too little about two axes.
 std::optional<PivotFit> fitPivot(const std::vector<CameraPose>& poses);
 
 } // namespace patina

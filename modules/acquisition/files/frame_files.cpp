@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "acquisition/files/measured.h"
-#include "acquisition/orientation.h"
+#include "acquisition/values/orientation.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> kFrameColumns = {"frame", "t [s]"};
 
-// A damaged picture is a frame that cannot be read, not a file among others.
+// Returns true for a picture's name; the file is a damaged frame if it cannot be decoded.
 bool isNamedAsPicture(const std::string& name) {
   std::string extension = name.substr(std::min(name.rfind('.'), name.size()));
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -32,13 +32,13 @@ bool isNamedAsPicture(const std::string& name) {
   return false;
 }
 
-// Files of a scan may lie beside its pictures.
+// Returns true for the other files of a scan, which may be in the folder of the pictures.
 bool isOfScan(const std::string& name) {
   return std::any_of(kScanFiles.begin(), kScanFiles.end(),
                      [&](const ScanFile& file) { return file.name == name; });
 }
 
-// Numbers within names count as numbers: IMG_9 comes before IMG_10.
+// Compares names with their digits as numbers: IMG_9 comes before IMG_10.
 bool isBefore(const std::string& a, const std::string& b) {
   const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
   std::size_t i = 0, j = 0;
@@ -99,8 +99,7 @@ GreyFrame readGrey(const fs::path& path) {
     for (int x = 0; x < picture.width; ++x, texel += channels) {
       const float grey =
           channels < 3 ? texel[0] : 0.299f * texel[0] + 0.587f * texel[1] + 0.114f * texel[2];
-      image.pixel.push_back(
-          static_cast<std::uint8_t>(std::lround(255 * std::clamp(grey, 0.f, 1.f))));
+      image.pixel.push_back(static_cast<std::uint8_t>(255 * std::clamp(grey, 0.f, 1.f) + 0.5f));
     }
   }
   return turned(std::move(image), picture.orientation);

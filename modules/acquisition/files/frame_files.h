@@ -1,34 +1,32 @@
-// Pictures of a camera in a scan folder.
+// Camera frames of a scan folder.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "acquisition/camera.h"
+#include "acquisition/values/camera.h"
 
 namespace patina {
 
-// Any picture that can be read, its brightness in 256 levels, turned as its EXIF says. Throws
-// FileError.
+// Reads a picture as 8-bit grey, turned by its EXIF orientation. Throws FileError.
 GreyFrame readGrey(const std::filesystem::path& path);
-// As a .png. Throws FileError.
+// Writes a .png. Throws FileError.
 void writeGrey(const std::filesystem::path& path, const GreyFrame& image);
 
 struct Frame {
   double t = 0;               // [s]
-  std::filesystem::path file; // may be missing
+  std::filesystem::path file; // may not exist
 };
-// What frames.csv in the folder lists (frame,t [s]), each in frames/ as its number in six digits
-// and whatever extension; without frames.csv all pictures of the folder or of frames/ in it by
-// their names' order, in which numbers count as numbers, `rate` a second. Pictures are told by
-// their content; one that has a picture's name only is damaged, and a frame too. `left_out` gets a
-// line about files that are neither, if there are any. Throws FileError: no frame, time that does
-// not increase, no rate.
+// Lists the frames of a scan folder. With frames.csv (frame,t [s]) these are its rows, with files
+// in frames/ named by six digits and any extension. Without it they are all pictures of the folder
+// or its frames/, `rate` per second in natural order of their names. Pictures are recognised by
+// content; a file that only has a picture's name is a damaged frame. `left_out` gets a line about
+// other files. Throws FileError: no frame, time that does not increase, no rate.
 std::vector<Frame> framesOf(const std::filesystem::path& folder, double rate,
                             std::string* left_out = nullptr);
 
-// What frames.csv says, and how a frame's file is called.
+// A row of frames.csv, and the file name of a frame.
 struct FrameRow {
   int number;
   double t; // [s]

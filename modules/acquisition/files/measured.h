@@ -1,4 +1,4 @@
-// What a number in a table of measurements may be.
+// Plausibility limits of numbers in tables of measurements.
 #pragma once
 
 #include <cmath>
@@ -12,23 +12,22 @@
 
 namespace patina {
 
-// What no value of a column, "x [m]", is beyond: 1e12, so that no sum of squares overflows. Of a
-// time 1e10 s: clocks that count from 1970 are at 1.8e9, and far beyond a double no longer tells
-// two samples of a fast probe apart.
-inline double mostMeasured(std::string_view column) {
+// Returns the largest accepted magnitude in a column such as "x [m]": 1e12, so that no sum of
+// squares overflows. For times it is 1e10 s: Unix times are near 1.8e9, and much larger doubles
+// cannot resolve the samples of a fast probe.
+inline double maxPlausible(std::string_view column) {
   return column.ends_with("[s]") ? 1e10 : 1e12;
 }
 
-// Throws FileError unless a value in SI units can have been measured: finite and no more than
-// mostMeasured(). `what` it is: its column.
+// Throws FileError if a value of the column `what` is not finite or exceeds maxPlausible().
 inline void requireMeasured(double value, const std::string& what, const std::string& name,
                             std::size_t line) {
   if (!std::isfinite(value)) throw FileError(name, line, what + " is not a finite number");
-  if (std::abs(value) > mostMeasured(what))
-    throw FileError(name, line, what + " is " + formatNumber(value) + ", which nothing measures");
+  if (std::abs(value) > maxPlausible(what))
+    throw FileError(name, line, what + " is " + formatNumber(value) + ", out of range");
 }
 
-// Appends a line about the columns that nobody reads, if the table has any.
+// Appends a line about the columns that are not read, if the table has any.
 inline void warnOfColumns(const CsvReader& reader, std::vector<std::string>* warnings) {
   if (const std::string line = reader.leftOut(); warnings && !line.empty())
     warnings->push_back(line);

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "acquisition/files/measured.h"
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -16,8 +16,10 @@
 namespace patina {
 namespace {
 
-constexpr double kUnit = 0.01;      // by how much a quaternion's length may differ from 1
-constexpr double kRounding = 1e-12; // of a length that should be 1
+constexpr double kUnit = 0.01;      // accepted deviation of a quaternion's length from 1
+constexpr double kRounding = 1e-12; // deviation of a unit length that is due to rounding
+
+constexpr std::string_view kRigDoubt = "# rig: ";
 
 const std::vector<std::string> kColumns = {
     "t [s]", "tx [m]", "ty [m]", "tz [m]",    "qx",
@@ -33,7 +35,7 @@ double measuredIn(const std::string& word, std::size_t column, const std::string
   return *value;
 }
 
-// Whether the first line that is no comment is a table's header.
+// Returns true if the first line that is not a comment is a table's header.
 bool startsWithName(std::string_view text) {
   text = withoutByteOrderMark(text);
   while (!text.empty()) {
@@ -49,19 +51,19 @@ bool startsWithName(std::string_view text) {
 }
 
 // Appends a pose of 8 or 10 values; throws FileError.
-void addPose(const std::vector<double>& values, const PoseSigmas& unsaid, const std::string& name,
-             std::size_t line, OnFile<CameraPose>& file) {
+void addPose(const std::vector<double>& values, const PoseSigmas& default_sigmas,
+             const std::string& name, std::size_t line, OnFile<CameraPose>& file) {
   CameraPose pose;
   pose.t = values[0];
   pose.position = {values[1], values[2], values[3]};
   pose.orientation = Eigen::Quaterniond(values[7], values[4], values[5], values[6]);
-  pose.sigma_position = values.size() > 8 ? values[8] : unsaid.position;
-  pose.sigma_angle = values.size() > 8 ? values[9] : unsaid.angle;
+  pose.sigma_position = values.size() > 8 ? values[8] : default_sigmas.position;
+  pose.sigma_angle = values.size() > 8 ? values[9] : default_sigmas.angle;
   if (!(std::abs(pose.orientation.norm() - 1) < kUnit))
     throw FileError(name, line,
                     "the quaternion's length is " + formatNumber(pose.orientation.norm()) +
                         ", not 1");
-  // A quaternion that this program wrote has length 1 but for rounding, and keeps its bits.
+  // A quaternion that this program wrote has length 1 up to rounding and keeps its bits.
   if (std::abs(pose.orientation.norm() - 1) > kRounding) pose.orientation.normalize();
   if (!(pose.sigma_position > 0 && pose.sigma_angle > 0))
     throw FileError(name, line, "deviations must be above 0");
@@ -81,19 +83,20 @@ std::string lineOf(const CameraPose& pose) {
 
 } // namespace
 
-OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& unsaid,
+OnFile<CameraPose> readPoses(const std::filesystem::path& path, const PoseSigmas& default_sigmas,
                              std::vector<std::string>* warnings) {
-  // A pose takes some 150 bytes, so that this is a day of a camera.
+  // A pose takes about 150 bytes, so this limit is a day of a camera.
   constexpr std::uintmax_t kMostBytes = 500'000'000;
   std::error_code unknown;
   if (const auto size = std::filesystem::file_size(path, unknown); !unknown && size > kMostBytes)
     throw FileError(path.string(), 0,
                     "is larger than any scan's poses: " + formatBytes(static_cast<double>(size)));
-  return parsePoses(readFile(path), path.string(), unsaid, warnings);
+  return parsePoses(readFile(path), path.string(), default_sigmas, warnings);
 }
 
 OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
-                              const PoseSigmas& unsaid, std::vector<std::string>* warnings) {
+                              const PoseSigmas& default_sigmas,
+                              std::vector<std::string>* warnings) {
   OnFile<CameraPose> file;
   if (startsWithName(whole)) {
     const std::vector<std::string> required(kColumns.begin(), kColumns.begin() + 8);
@@ -105,14 +108,21 @@ OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
       if (!reader.has(kColumns[8])) row.resize(required.size());
       for (std::size_t i = 0; i < row.size(); ++i)
         requireMeasured(row[i], kColumns[i], name, reader.line());
-      addPose(row, unsaid, name, reader.line(), file);
+      addPose(row, default_sigmas, name, reader.line(), file);
     }
   } else {
     LineBuffer lines;
     lines.append(withoutByteOrderMark(whole));
+    bool rig_doubted = false;
     std::size_t number = 0;
     for (std::string_view line; lines.next(line, true);) {
       ++number;
+      rig_doubted = rig_doubted || line.starts_with(kRigDoubt);
+      if (warnings && line.starts_with(kRigDoubt)) {
+        std::string doubt(line.substr(kRigDoubt.size()));
+        while (!doubt.empty() && doubt.back() == '\r') doubt.pop_back();
+        warnings->push_back(name + ": of the rig's markers: " + doubt);
+      }
       std::istringstream words{std::string(line.substr(0, line.find('#')))};
       const std::vector<std::string> word{std::istream_iterator<std::string>(words), {}};
       if (word.empty()) continue;
@@ -123,8 +133,9 @@ OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
       std::vector<double> values;
       for (const std::string& each : word)
         values.push_back(measuredIn(each, values.size(), name, number));
-      addPose(values, unsaid, name, number, file);
+      addPose(values, default_sigmas, name, number, file);
     }
+    for (CameraPose& pose : file.values) pose.rig_doubted = rig_doubted;
   }
   if (file.values.empty()) throw FileError(name, 0, "there is no pose in it");
   return file;
@@ -145,12 +156,14 @@ std::string poseRow(const CameraPose& pose) {
          formatNumber(pose.sigma_angle) + "\n";
 }
 
-std::string poseRow(const NoPose& without) {
+std::string poseRow(const MissingPose& without) {
   return "# " + formatNumber(without.t) + " no pose: " + without.why + "\n";
 }
 
-std::string posesText(const std::vector<CameraPose>& poses, const std::vector<NoPose>& without) {
+std::string posesText(const std::vector<CameraPose>& poses, const std::vector<MissingPose>& without,
+                      const std::string& rig_doubt) {
   std::string text = posesHeader();
+  if (!rig_doubt.empty()) text += std::string(kRigDoubt) + rig_doubt + "\n";
   auto gap = without.begin();
   for (const CameraPose& pose : poses) {
     for (; gap != without.end() && gap->t < pose.t; ++gap) text += poseRow(*gap);
@@ -161,8 +174,8 @@ std::string posesText(const std::vector<CameraPose>& poses, const std::vector<No
 }
 
 void writePoses(const std::filesystem::path& path, const std::vector<CameraPose>& poses,
-                const std::vector<NoPose>& without) {
-  writeFileAtomically(path, posesText(poses, without));
+                const std::vector<MissingPose>& without, const std::string& rig_doubt) {
+  writeFileAtomically(path, posesText(poses, without, rig_doubt));
 }
 
 } // namespace patina

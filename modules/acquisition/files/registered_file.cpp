@@ -25,14 +25,14 @@ std::string registeredText(const std::vector<PathSample>& samples,
   const Pose& mesh_from_path = registration.mesh_from_path;
   const Eigen::Quaterniond turn(mesh_from_path.linear());
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!registration.counts[i]) continue;
+    if (!registration.inliers[i]) continue;
     const Vec3 p = mesh_from_path * samples[i].position;
     const Eigen::Quaterniond q = turn * samples[i].orientation;
-    const Miss& miss = registration.misses[i];
-    const Vec3& b = miss.foot.barycentric;
+    const SurfaceResidual& residual = registration.residuals[i];
+    const Vec3& b = residual.foot.barycentric;
     text += csvRow({samples[i].t, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), samples[i].sigma,
-                    samples[i].force, static_cast<double>(miss.foot.face), b[0], b[1], b[2],
-                    miss.distance});
+                    samples[i].force, static_cast<double>(residual.foot.face), b[0], b[1], b[2],
+                    residual.distance});
   }
   return text;
 }
@@ -53,12 +53,13 @@ RegistrationReport readRegistrationReport(const std::filesystem::path& path) {
 
 namespace {
 
-StretchPlaces readPlaces(const std::filesystem::path& heights, std::vector<std::string>* warnings) {
+IntervalPositions readPlaces(const std::filesystem::path& heights,
+                             std::vector<std::string>* warnings) {
   const CsvColumns columns = {
       {"t [s]", "along [m]", "height [m]", "sigma [m]", "stretch"}, {}, {"speed [m/s]"}};
   CsvReader reader(heights, columns);
   warnOfColumns(reader, warnings);
-  StretchPlaces places;
+  IntervalPositions places;
   for (std::vector<double> row; reader.next(row);) {
     for (std::size_t i = 0; i < row.size(); ++i)
       requireMeasured(row[i], reader.columns()[i], heights.string(), reader.line());
@@ -80,7 +81,8 @@ std::vector<PathOnMesh> readStrokes(const std::filesystem::path& path,
                            "b2", "distance [m]"}});
   warnOfColumns(reader, warnings);
   const bool timed = reader.has("t [s]");
-  const StretchPlaces places = heights.empty() ? StretchPlaces() : readPlaces(heights, warnings);
+  const IntervalPositions places =
+      heights.empty() ? IntervalPositions() : readPlaces(heights, warnings);
   if (!heights.empty() && places.empty()) throw FileError(heights.string(), 0, "has no height");
   if (!heights.empty() && !timed)
     throw FileError(path.string(), 1, "has no times to find the heights' by");

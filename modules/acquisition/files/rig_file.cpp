@@ -2,7 +2,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "acquisition/files/scan_files.h"
+#include "acquisition/files/scan_tables.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/json.h"
@@ -11,8 +11,6 @@
 
 namespace patina {
 namespace {
-
-constexpr const char* kAxes[] = {"a1u", "a1v", "a2u", "a2v"};
 
 Json jsonOf(const Vec3& v) {
   return Json(Json::Array{v.x(), v.y(), v.z()});
@@ -30,7 +28,7 @@ Vec3 vectorIn(const Json& json, const std::string& key) {
   return v;
 }
 
-// Of something that a hand holds [m].
+// Reads a position on a hand-held body [m].
 Vec3 placeIn(const Json& json, const std::string& key) {
   const Vec3 place = vectorIn(json, key);
   if (!(place.norm() < 10)) throw Error("'" + key + "' is more than 10 m away");
@@ -55,8 +53,11 @@ Rig rigIn(const Json& json) {
   rig.probe.tip = placeIn(json, "tip");
   setNumber(json, "acceleration_step", rig.probe.acceleration_step);
   setNumber(json, "acceleration_noise", rig.probe.acceleration_noise);
+  setNumber(json, "gyroscope_noise", rig.probe.rate_noise);
+  rig.gyroscope = json.find("gyroscope_noise") != nullptr;
   setNumber(json, "force_step", rig.probe.force_step);
   setNumber(json, "force_noise", rig.probe.force_noise);
+  setNumber(json, "tip_radius", rig.tip_radius);
   if (const Json* zero = json.find("force_zero")) rig.force_zero = zero->asNumber();
   if (!std::isfinite(rig.force_zero)) throw Error("'force_zero' is not finite");
   if (const Json* gain = json.find("force_gain")) rig.force_gain = gain->asNumber();
@@ -65,7 +66,7 @@ Rig rigIn(const Json& json) {
   const Json* axes = json.find("accelerometers");
   if (!axes) return rig;
   for (std::size_t i = 0; i < rig.probe.axes.size(); ++i)
-    rig.probe.axes[i] = axisIn(axes->at(kAxes[i]));
+    rig.probe.axes[i] = axisIn(axes->at(kAxisNames[i]));
   if (!(rig.probe.accelerationVariance() > 0))
     throw Error("'acceleration_step' and 'acceleration_noise' cannot both be 0");
   rig.gravity = vectorIn(json, "gravity");
@@ -76,12 +77,17 @@ Rig rigIn(const Json& json) {
   return rig;
 }
 
-// Numbers of a rigid motion are mended where they are rounded, refused where they are another
-// thing.
+// Reads a pose. Rounded rotations are normalised; matrices that are not rigid are refused.
 Pose roundedPoseIn(const Json& json, const std::string& key) {
   Pose pose = poseIn(json, key, 0.01);
   pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
   return pose;
+}
+
+template <class Marker, class Visit> void forEachDeviation(Marker& marker, const Visit& visit) {
+  visit("size_deviation", marker.size_deviation);
+  visit("place_deviation", marker.place_deviation);
+  visit("angle_deviation", marker.angle_deviation);
 }
 
 RigMarker markerIn(const Json& json) {
@@ -93,8 +99,16 @@ RigMarker markerIn(const Json& json) {
   if (id < 0 || id > 100000) throw Error("an 'id' must be 0 or more");
   marker.id = static_cast<int>(id);
   marker.size = json.at("size").asNumber();
-  if (!(marker.size > 0 && marker.size < 100)) throw Error("a 'size' must be above 0 [m]");
+  if (!(marker.size > 0)) throw Error("a 'size' must be above 0 [m]");
+  if (marker.size > 1)
+    throw Error("a marker of " + formatNumber(marker.size) +
+                " m? lengths of rig.json are in metres, so that 27 mm are 0.027");
   marker.probe_from_marker = roundedPoseIn(json, "probe_from_marker");
+  forEachDeviation(marker, [&](const char* key, double& deviation) {
+    if (const Json* value = json.find(key)) deviation = value->asNumber();
+    if (!(deviation >= 0 && std::isfinite(deviation)))
+      throw Error("'" + std::string(key) + "' must be 0 or more");
+  });
   return marker;
 }
 
@@ -109,6 +123,19 @@ std::vector<RigMarker> markersIn(const Json& json) {
   }
   if (markers.empty()) throw Error("there is no marker in it");
   return markers;
+}
+
+RigDeviations deviationsIn(const Json& json) {
+  RigDeviations found;
+  if (json.find("tip_deviation")) found.tip = vectorIn(json, "tip_deviation").cwiseAbs().maxCoeff();
+  if (const Json* markers = json.find("markers"))
+    for (const Json& marker : markers->asArray())
+      if (const Json* size = marker.find("size_deviation"))
+        found.size = std::max(found.size.value_or(0),
+                              std::abs(size->asNumber()) / marker.at("size").asNumber());
+  found.calibrated = found.tip || found.size || json.find("accelerometers") ||
+                     json.find("force_zero") || json.find("force_gain");
+  return found;
 }
 
 template <class Read>
@@ -126,7 +153,11 @@ auto readJson(const std::string& text, const std::string& name, const Read& read
 Json jsonOf(const RigMarker& marker) {
   Json json = Json::object();
   json.set("dictionary", marker.family).set("id", marker.id).set("size", marker.size);
-  return json.set("probe_from_marker", poseJson(marker.probe_from_marker));
+  json.set("probe_from_marker", poseJson(marker.probe_from_marker));
+  forEachDeviation(marker, [&](const char* key, double deviation) {
+    if (deviation > 0) json.set(key, deviation);
+  });
+  return json;
 }
 
 } // namespace
@@ -147,19 +178,27 @@ std::vector<RigMarker> parseMarkers(const std::string& text, const std::string& 
   return readJson(text, name, markersIn);
 }
 
+RigDeviations parseRigDeviations(const std::string& text, const std::string& name) {
+  return readJson(text, name, deviationsIn);
+}
+
 std::string rigText(const Rig& rig, const std::vector<RigMarker>& markers) {
   Json json = Json::object(), axes = Json::object();
   json.set("tip", jsonOf(rig.probe.tip));
-  for (std::size_t i = 0; i < rig.probe.axes.size(); ++i) {
-    Json axis = Json::object();
-    axis.set("position", jsonOf(rig.probe.axes[i].position));
-    axes.set(kAxes[i], axis.set("direction", jsonOf(rig.probe.axes[i].direction)));
+  if (rig.accelerometers) {
+    for (std::size_t i = 0; i < rig.probe.axes.size(); ++i) {
+      Json axis = Json::object();
+      axis.set("position", jsonOf(rig.probe.axes[i].position));
+      axes.set(kAxisNames[i], axis.set("direction", jsonOf(rig.probe.axes[i].direction)));
+    }
+    json.set("accelerometers", axes).set("gravity", jsonOf(rig.gravity));
   }
-  json.set("accelerometers", axes).set("gravity", jsonOf(rig.gravity));
   if (rig.force_zero != 0) json.set("force_zero", rig.force_zero);
   if (rig.force_gain != 1) json.set("force_gain", rig.force_gain);
+  if (rig.tip_radius != 0) json.set("tip_radius", rig.tip_radius);
   json.set("acceleration_step", rig.probe.acceleration_step);
   json.set("acceleration_noise", rig.probe.acceleration_noise);
+  if (rig.gyroscope) json.set("gyroscope_noise", rig.probe.rate_noise);
   json.set("force_step", rig.probe.force_step).set("force_noise", rig.probe.force_noise);
   Json list = Json::array();
   for (const RigMarker& marker : markers) list.push(jsonOf(marker));

@@ -11,8 +11,9 @@ template <int N> using Node = CameraTrack::Node<N>;
 
 template <int N, int C>
 MotionState<N, C> stepped(MotionState<N, C> state, double dt, double noise) {
-  MotionStep<N> step = motionStep<N>(std::abs(dt), noise, ProcessNoise::white);
-  if (dt < 0) step.F = motionStep<N>(dt, 0, ProcessNoise::white).F; // backwards in time
+  MotionStep<N> step = motionStep<N>(std::abs(dt), noise, ProcessNoise::continuous_white);
+  if (dt < 0)
+    step.F = motionStep<N>(dt, 0, ProcessNoise::continuous_white).F; // prediction backwards in time
   predict(state, step);
   return state;
 }
@@ -41,12 +42,12 @@ template <int N>
 TipMotion motionIn(const std::vector<Node<N>>& nodes, const CameraTrackOptions& options, double t) {
   const auto after = std::upper_bound(nodes.begin(), nodes.end(), t,
                                       [](double time, const Node<N>& n) { return time < n.t; });
-  // Where the track begins anew nothing leads over; what is nearer tells more.
-  const bool of_next = after == nodes.begin() ||
-                       (after != nodes.end() && after->starts && after->t - t < t - (after - 1)->t);
+  // Uses the nearest node, or the one of the same segment if a new segment starts in between.
+  const bool of_next = after == nodes.begin() || (after != nodes.end() && after->is_segment_start &&
+                                                  after->t - t < t - (after - 1)->t);
   const Node<N>& node = of_next ? *after : *(after - 1);
   const double since = t - node.t;
-  const bool inside = after != nodes.begin() && after != nodes.end() && !after->starts;
+  const bool inside = after != nodes.begin() && after != nodes.end() && !after->is_segment_start;
   const Node<N>& leads = inside ? *after : node;
   const double tip_noise = leads.tip_noise, turn_noise = leads.turn_noise;
   TipMotion motion;

@@ -8,7 +8,7 @@ void markContact(std::vector<PathSample>& path, const ContactLimits& limits) {
   if (!(limits.off <= limits.on))
     throw std::invalid_argument("markContact: contact must end at no more than it begins at");
   bool touching = false;
-  std::size_t since = 0; // where the force went beyond the limit that would change it
+  std::size_t since = 0; // first sample with the force beyond the limit that ends the present state
   bool beyond = false;
   for (std::size_t i = 0; i < path.size(); ++i) {
     path[i].touching = touching;
@@ -22,8 +22,9 @@ void markContact(std::vector<PathSample>& path, const ContactLimits& limits) {
   }
 }
 
-std::vector<Stretch> touchingStretches(const std::vector<PathSample>& path, double longest_pause) {
-  std::vector<Stretch> stretches;
+std::vector<ContactInterval> contactIntervals(const std::vector<PathSample>& path,
+                                              double longest_pause) {
+  std::vector<ContactInterval> stretches;
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (!path[i].touching) continue;
     const bool goes_on = i > 0 && !stretches.empty() && stretches.back().end == i &&

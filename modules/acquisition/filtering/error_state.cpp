@@ -7,7 +7,7 @@ namespace {
 
 using State = ErrorState;
 
-// P F^T, by columns: position takes from velocity and acceleration, velocity from acceleration.
+// Computes P F^T by columns.
 void stepColumns(State::Square& P, double dt) {
   const double half = 0.5 * dt * dt;
   for (const int at : {State::kTip, State::kAngle}) {
@@ -16,7 +16,7 @@ void stepColumns(State::Square& P, double dt) {
   }
 }
 
-// F P, a column at a time.
+// Computes F P, one column at a time.
 void stepRows(State::Square& P, double dt) {
   const double half = 0.5 * dt * dt;
   for (double* column = P.data(); column != P.data() + P.size(); column += State::kSize)
@@ -27,7 +27,7 @@ void stepRows(State::Square& P, double dt) {
       }
 }
 
-// P F and F^T P: the other way round.
+// Computes P F and F^T P, for the backward pass.
 void stepRowsBack(State::Square& P, double dt) {
   const double half = 0.5 * dt * dt;
   for (double* column = P.data(); column != P.data() + P.size(); column += State::kSize)
@@ -45,8 +45,8 @@ void stepColumnsBack(State::Square& P, double dt) {
   }
 }
 
-// Rounding is not symmetric, and what it leaves apart nothing draws together again.
-void makeEven(State::Square& P) {
+// Symmetrises the covariance. Rounding errors would otherwise accumulate in its antisymmetric part.
+void symmetrize(State::Square& P) {
   for (int i = 0; i < State::kSize; ++i)
     for (int k = 0; k < i; ++k) P(i, k) = P(k, i) = 0.5 * (P(i, k) + P(k, i));
 }
@@ -61,14 +61,14 @@ void addNoise(State::Square& P, int at, double dt, const Eigen::Matrix3d& densit
 
 } // namespace
 
-State::Vector MeasuredRow::columns(const State::Square& P) const {
+State::Vector MeasurementRow::columns(const State::Square& P) const {
   State::Vector sum = value[0] * P.col(index[0]);
   for (std::size_t i = 1; i < static_cast<std::size_t>(count); ++i)
     sum += value[i] * P.col(index[i]);
   return sum;
 }
 
-double MeasuredRow::dot(const State::Vector& x) const {
+double MeasurementRow::dot(const State::Vector& x) const {
   double sum = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) sum += value[i] * x[index[i]];
   return sum;
@@ -85,16 +85,16 @@ void predict(State& state, double dt, const Eigen::Matrix3d& jerk,
   stepRows(state.P, dt);
   addNoise(state.P, State::kTip, dt, jerk);
   addNoise(state.P, State::kAngle, dt, angular_jerk);
-  makeEven(state.P);
+  symmetrize(state.P);
 }
 
-UsedRow update(State& state, const MeasuredRow& row, double residual, double variance) {
-  UsedRow used;
+ProcessedRow update(State& state, const MeasurementRow& row, double residual, double variance) {
+  ProcessedRow used;
   used.row = row;
   const State::Vector Ph = row.columns(state.P);
   used.residual = residual;
   used.variance = row.dot(Ph) + variance;
-  if (!(used.variance > 0)) { // known exactly, and measured exactly again
+  if (!(used.variance > 0)) { // both state and measurement are exact
     used.gain.setZero();
     used.residual = 0;
     used.variance = std::numeric_limits<double>::infinity();
@@ -102,17 +102,16 @@ UsedRow update(State& state, const MeasuredRow& row, double residual, double var
   }
   used.gain = Ph / used.variance;
   state.x += used.gain * residual;
-  // (I - K h) P (I - K h)^T + K R K^T, as two outer products.
-  const State::Vector rest = Ph - used.variance * used.gain;
-  for (int i = 0; i < State::kSize; ++i) state.P.col(i) -= Ph[i] * used.gain + used.gain[i] * rest;
+  // P - K S K^T, which is symmetric to the last bits; predict() takes care of these.
+  for (int i = 0; i < State::kSize; ++i) state.P.col(i) -= Ph[i] * used.gain;
   return used;
 }
 
-void Adjoint::backThrough(const UsedRow& used) {
-  // (I - K h)^T L (I - K h) + h h^T / S: only rows and columns of h change.
+void BrysonFrazierState::smoothMeasurement(const ProcessedRow& used) {
+  // (I - K h)^T L (I - K h) + h h^T / S changes only rows and columns of h.
   const State::Vector LK = L.lazyProduct(used.gain);
   const double KLK = used.gain.dot(LK), lK = l.dot(used.gain);
-  const MeasuredRow& row = used.row;
+  const MeasurementRow& row = used.row;
   const auto count = static_cast<std::size_t>(row.count);
   for (std::size_t i = 0; i < count; ++i) {
     L.col(row.index[i]) -= row.value[i] * LK;
@@ -125,17 +124,17 @@ void Adjoint::backThrough(const UsedRow& used) {
       L(row.index[i], row.index[j]) += both * row.value[i] * row.value[j];
 }
 
-void Adjoint::backThroughStep(double dt) {
+void BrysonFrazierState::smoothStep(double dt) {
   for (const int at : {State::kTip, State::kAngle}) {
     l.segment<3>(at + 6) += dt * l.segment<3>(at + 3) + 0.5 * dt * dt * l.segment<3>(at);
     l.segment<3>(at + 3) += dt * l.segment<3>(at);
   }
   stepColumnsBack(L, dt);
   stepRowsBack(L, dt);
-  makeEven(L);
+  symmetrize(L);
 }
 
-void Adjoint::forget() {
+void BrysonFrazierState::reset() {
   l.head<State::kBias>().setZero();
   L.topRows<State::kBias>().setZero();
   L.leftCols<State::kBias>().setZero();

@@ -1,5 +1,5 @@
-// The state of the fused path and its exact bookkeeping: prediction, scalar measurements in Joseph
-// form, and the smoother's way back without an inverse (Bierman 1973).
+// Error state of the fused path: prediction, scalar measurement updates, and the modified
+// Bryson-Frazier smoother, which needs no inverse (Bierman 1973).
 #pragma once
 
 #include <array>
@@ -8,22 +8,24 @@
 
 namespace patina {
 
-// Tip, its velocity and acceleration in the path's frame; angle from the reference, its rate and
-// rate of rate in the probe's; biases of the accelerometers.
+// Tip, velocity and acceleration in the path's frame; angle from the reference, angular rate and
+// acceleration in the probe's frame; biases of the accelerometers and of the gyroscope, whose rows
+// and columns are zero if the probe has none.
 struct ErrorState {
   static constexpr int kTip = 0, kVelocity = 3, kAcceleration = 6;
-  static constexpr int kAngle = 9, kRate = 12, kRateOfRate = 15, kBias = 18, kSize = 22;
+  static constexpr int kAngle = 9, kRate = 12, kRateOfRate = 15, kBias = 18, kRateBias = 22,
+                       kSize = 25;
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Square = Eigen::Matrix<double, kSize, kSize>;
   Vector x = Vector::Zero();
   Square P = Square::Zero();
 };
 
-// Of one number that is measured: its few coefficients.
-struct MeasuredRow {
+// Sparse row h of the measurement matrix, for one scalar measurement.
+struct MeasurementRow {
   int count = 0;
-  std::array<int, 10> index{};
-  std::array<double, 10> value{};
+  std::array<int, 13> index{};
+  std::array<double, 13> value{};
 
   void add(int at, double coefficient) {
     if (coefficient == 0) return;
@@ -37,28 +39,28 @@ struct MeasuredRow {
   double dot(const ErrorState::Vector& x) const;
 };
 
-// What the way back needs of one measurement.
-struct UsedRow {
-  MeasuredRow row;
+// A processed measurement, as the backward pass needs it.
+struct ProcessedRow {
+  MeasurementRow row;
   ErrorState::Vector gain;
   double residual = 0, variance = 0; // S
 };
 
-// `jerk` and `angular_jerk` are densities of white noise [m^2/s^5], [rad^2/s^5].
+// Predicts the state; `jerk` [m^2/s^5] and `angular_jerk` [rad^2/s^5] are noise densities.
 void predict(ErrorState& state, double dt, const Eigen::Matrix3d& jerk,
              const Eigen::Matrix3d& angular_jerk);
 
-// `residual` = measured - expected of the state as it is.
-UsedRow update(ErrorState& state, const MeasuredRow& row, double residual, double variance);
+// Updates the state; `residual` is the measurement minus its prediction.
+ProcessedRow update(ErrorState& state, const MeasurementRow& row, double residual, double variance);
 
-// What later measurements say of a state: smoothed x = x - P l, P = P - P L P.
-struct Adjoint {
+// Backward variables of the smoother: smoothed x = x - P l, smoothed P = P - P L P.
+struct BrysonFrazierState {
   ErrorState::Vector l = ErrorState::Vector::Zero();
   ErrorState::Square L = ErrorState::Square::Zero();
 
-  void backThrough(const UsedRow& used);
-  void backThroughStep(double dt);
-  void forget(); // all but the biases: before this the motion was another one
+  void smoothMeasurement(const ProcessedRow& used);
+  void smoothStep(double dt);
+  void reset(); // resets all but the biases, at a restart of the motion
 };
 
 } // namespace patina

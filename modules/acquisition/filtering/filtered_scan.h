@@ -1,44 +1,64 @@
-// A whole scan through the filter: what the command and the window show and write.
+// Filters a whole scan, for the command and the window.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "acquisition/filtering/camera_track.h"
 #include "acquisition/filtering/fused_path.h"
-#include "acquisition/filtering/probe_clock.h"
 
 namespace patina {
+
+// Offset of the probe's clock from the camera's, estimated from the common motion.
+
+// A stamp t of the probe is t - offset - skew (t - start) on the camera's clock.
+struct ProbeClock {
+  double start = 0, offset = 0; // [s]
+  double skew = 0;              // relative excess rate of the probe's clock
+  double offset_deviation = 0, skew_deviation = 0;
+  bool is_significant = false; // offset or skew are statistically significant
+
+  double onCamera(double t) const { return t - offset - skew * (t - start); }
+};
+
+// Compares the accelerometers with the accelerations of the camera's smoothed track: gravity by the
+// probe's tilt, and the hand's own motion. Finds offsets up to half a second. Returns nullopt if
+// the probe hardly rotates or moves while it is tracked. Samples are in the order of time.
+std::optional<ProbeClock> fitClock(const CameraTrack& track,
+                                   const std::vector<ProbeSample>& samples, const ProbeModel& probe,
+                                   const Vec3& gravity);
 
 enum class PathModel { fused, acceleration, velocity };
 
 struct ScanFilter {
-  PathModel model = PathModel::fused;  // where accelerometers are not known: acceleration
-  bool smooth = true;                  // fused always is
-  bool touching_only = true;           // leaves out what the probe did in the air
-  double longest_pause = 0.05;         // between samples of the probe [s]
+  PathModel model = PathModel::fused;  // acceleration if the accelerometers are not calibrated
+  bool smooth = true;                  // the fused model always smooths
+  bool touching_only = true;           // leaves out samples without contact
+  double longest_pause = 0.05;         // longest step between the probe's samples [s]
   Vec3 gravity = Vec3(0, 0, -9.80665); // in the camera's frame [m/s^2]
 };
 
 struct FilteredScan {
   std::vector<PathSample> path; // within the poses' times, on the camera's clock
   CameraTrack track;
-  std::array<double, 4> bias{}; // of the accelerometers [m/s^2]; 0 where they were not used
+  std::array<double, 4> bias{}; // accelerometers [m/s^2]; 0 if they were not used
   std::vector<Gap> without_pose, without_sample;
   double largest_force = 0; // [N]
-  // scanHeights() makes heights of these two without another run of the filter: the fused path at
-  // each sample of the probe, in the air too, and those samples on the camera's clock. Both are
-  // empty for the other models.
+  // Input of scanHeights(): the fused path at each sample of the probe, including the air, and the
+  // samples on the camera's clock. Both are empty for the other models.
   std::vector<PathSample> whole;
   std::vector<ProbeSample> samples;
-  std::optional<ProbeClock> clock;  // where accelerometers are known; corrected where it differs
-  std::array<double, 4> axis_nis{}; // of FusedPath, as pose_nis; 0 where it was not used
+  std::optional<ProbeClock> clock;  // present with calibrated accelerometers; applied if it differs
+  std::array<double, 4> axis_nis{}; // see FusedPath, also for pose_nis; 0 if not used
   double pose_nis = 0;
-  std::vector<std::string> doubts; // in words: why its numbers may be wrong
+  std::vector<std::string> warnings; // reasons why the result may be wrong
 };
 
-// `samples` may be empty: the path then is at the poses' times, has no force and is not cut. Throws
-// Cancelled, and Error where the streams have no time in common.
+// `samples` may be empty; the path then is at the poses' times, has no force and is not cut. Throws
+// Cancelled, and Error if the streams do not overlap in time.
 FilteredScan filterScan(const std::vector<CameraPose>& poses,
                         const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                        const ScanFilter& filter, Progress& progress);
+                        const ScanFilter& filter, Progress& progress,
+                        const std::vector<RateSample>& rates = {});
 
 } // namespace patina

@@ -2,41 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "acquisition/filtering/error_state.h"
+#include "acquisition/filtering/fusion_pass.h"
 #include "core/error.h"
 #include "core/numbers.h"
 
 namespace patina {
 namespace {
 
-using State = ErrorState;
-
-constexpr double kStandardGravity = 9.80665; // [m/s^2]
-constexpr std::size_t kBlock = 256;          // events between two states that are kept
-constexpr double kTurning = 0.15;            // a hand changes its motion in about this time [s]
-constexpr std::size_t kUnrest = 64;          // samples over which the probe's unrest is measured
-
-struct Event {
-  TipMotion reference;
-  double t = 0;
-  Vec3 jerk = Vec3::Zero();            // density in the probe's frame [m^2/s^5]
-  const ProbeSample* sample = nullptr; // one of the two is set
-  const CameraPose* pose = nullptr;
-  bool starts = false;
-};
-
-Vec3 logOf(const Eigen::Quaterniond& q) {
-  const Eigen::AngleAxisd turn(q.w() < 0 ? Eigen::Quaterniond(-q.coeffs()) : q);
-  return turn.angle() * turn.axis();
-}
-
-Eigen::Quaterniond expOf(const Vec3& turn) {
-  const double angle = turn.norm();
-  return angle > 0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle))
-                   : Eigen::Quaterniond::Identity();
-}
+constexpr double kWindow = 8e-3;         // readings that the coarse passes take together [s]
+constexpr std::size_t kNoiseWindow = 64; // samples over which the probe's process noise is measured
+constexpr std::size_t kPosesPerInterval = 6; // with one process noise
+constexpr double kLeastNoise = 0.01;         // no accelerometer has less [m/s^2]
+constexpr double kOutlier = 40;    // a chi^2 of six degrees of freedom exceeds it once in 2 million
+constexpr double kRejected = 1e-4; // weight of an outlier, which the next pass may take back
 
 std::vector<const ProbeSample*> usable(const std::vector<ProbeSample>& samples) {
   std::vector<const ProbeSample*> kept;
@@ -49,14 +28,15 @@ std::vector<const ProbeSample*> usable(const std::vector<ProbeSample>& samples) 
   return kept;
 }
 
-// How fast accelerations wander, in the probe's frame, from their differences from sample to
-// sample: texture makes them restless, a hand in the air does not.
-std::vector<Vec3> unrest(const std::vector<const ProbeSample*>& samples, const ProbeModel& probe) {
+// Returns the process noise of the acceleration in the probe's frame, from differences of
+// successive samples. Texture raises it, motion in the air hardly does.
+std::vector<Vec3> processNoise(const std::vector<const ProbeSample*>& samples,
+                               const ProbeModel& probe) {
   Vec3 weights = Vec3::Zero();
   for (const AccelerometerAxis& axis : probe.axes) weights += axis.direction.cwiseAbs2();
   std::vector<Vec3> jerks(samples.size(), Vec3::Zero());
-  for (std::size_t begin = 0; begin + 1 < samples.size(); begin += kUnrest) {
-    const std::size_t end = std::min(begin + kUnrest, samples.size() - 1);
+  for (std::size_t begin = 0; begin + 1 < samples.size(); begin += kNoiseWindow) {
+    const std::size_t end = std::min(begin + kNoiseWindow, samples.size() - 1);
     Vec3 jerk = Vec3::Zero();
     for (std::size_t k = 0; k < probe.axes.size(); ++k) {
       double squares = 0, seconds = 0;
@@ -74,175 +54,111 @@ std::vector<Vec3> unrest(const std::vector<const ProbeSample*>& samples, const P
   return jerks;
 }
 
-// A motion of which neither camera nor probe has told for longer is begun anew [s], as one that the
-// camera has not seen for kUnseen.
-constexpr double kUnheard = 1;
-
-std::vector<Event> eventsOf(const std::vector<CameraPose>& poses, const CameraTrack& track,
-                            const std::vector<const ProbeSample*>& samples,
-                            const ProbeModel& probe) {
-  const std::vector<Vec3> jerks = unrest(samples, probe);
-  std::vector<Event> events;
-  events.reserve(samples.size() + poses.size());
-  std::size_t next = 0, node = 0;
-  // Never calmer than the camera found the hand to be.
-  const auto add = [&](double t, const Vec3& jerk, const ProbeSample* sample,
-                       const CameraPose* pose, bool starts) {
-    const TipMotion reference = motionAt(track, t);
-    const double least = reference.position_noise * reference.position_noise;
-    events.push_back({reference, t, jerk.cwiseMax(least), sample, pose, starts});
+// Merges both streams; readings at one time are one.
+std::vector<InertialReading> readingsOf(const std::vector<const ProbeSample*>& samples,
+                                        const std::vector<RateSample>& rates,
+                                        const ProbeModel& probe) {
+  const std::vector<Vec3> jerks = processNoise(samples, probe);
+  std::vector<InertialReading> readings;
+  readings.reserve(std::max(samples.size(), rates.size()));
+  std::size_t next = 0;
+  const auto addRate = [&](const RateSample& rate) {
+    if (!std::isfinite(rate.t) || !rate.rate.allFinite()) return;
+    if (readings.empty() || readings.back().t != rate.t) {
+      if (!readings.empty() && rate.t < readings.back().t) return;
+      readings.emplace_back();
+      readings.back().t = rate.t;
+      readings.back().jerk =
+          jerks.empty() ? Vec3(0, 0, 0) : jerks[std::min(readings.size() - 1, jerks.size() - 1)];
+    }
+    InertialReading& reading = readings.back();
+    reading.rate = rate.rate;
+    reading.rate_variance = probe.rate_noise * probe.rate_noise;
+    reading.has_rate = true;
   };
-  const auto addSample = [&](std::size_t i) {
-    const bool starts = events.empty() || samples[i]->t - events.back().t > kUnheard;
-    add(samples[i]->t, jerks[i], samples[i], nullptr, starts);
-  };
-  std::optional<double> seen; // [s], the last pose
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (track.verdicts[i] != PoseVerdict::used) continue;
-    for (; next < samples.size() && samples[next]->t < poses[i].t; ++next) addSample(next);
-    const bool starts = events.empty() || (node > 0 && track.fast[node].starts) ||
-                        (seen && poses[i].t - *seen > kUnseen) ||
-                        poses[i].t - events.back().t > kUnheard;
-    seen = poses[i].t;
-    add(poses[i].t,
-        samples.empty() ? Vec3(Vec3::Zero()) : jerks[std::min(next, samples.size() - 1)], nullptr,
-        &poses[i], starts);
-    ++node;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const ProbeSample& sample = *samples[i];
+    while (next < rates.size() && rates[next].t < sample.t) addRate(rates[next++]);
+    InertialReading reading;
+    reading.t = sample.t;
+    reading.acceleration = sample.acceleration;
+    reading.acceleration_variance =
+        std::max(probe.accelerationVariance(), kLeastNoise * kLeastNoise);
+    reading.jerk = jerks[i];
+    reading.force = sample.force;
+    reading.has_acceleration = reading.is_sample = true;
+    readings.push_back(reading);
+    while (next < rates.size() && !(rates[next].t > sample.t)) addRate(rates[next++]);
   }
-  for (; next < samples.size(); ++next) addSample(next);
-  return events;
+  while (next < rates.size()) addRate(rates[next++]);
+  return readings;
 }
 
-// One way through the events; what the way back needs is in `FusedStep`.
-struct FusedStep {
-  double dt = 0;
-  std::array<UsedRow, 6> used;
-  std::size_t count = 0;
-  State::Vector x;
-  Eigen::Matrix<double, State::kSize, 6> columns; // of P: tip and angle
-};
-
-class Fusion {
- public:
-  Fusion(const std::vector<Event>& events, const ProbeModel& probe, const FusedOptions& options)
-      : events_(events), probe_(probe), options_(options) {}
-
-  void advance(State& state, std::size_t k, FusedStep& step) const {
-    const Event& event = events_[k];
-    step.count = 0;
-    if (event.starts) {
-      begin(state, event.reference, k == 0);
-    } else {
-      step.dt = event.t - events_[k - 1].t;
-      const Eigen::Matrix3d R = event.reference.orientation.toRotationMatrix();
-      const double turning = event.reference.angle_noise * event.reference.angle_noise;
-      predict(state, step.dt, R * event.jerk.asDiagonal() * R.transpose(),
-              turning * Eigen::Matrix3d::Identity());
-      followReference(state, events_[k - 1].reference, event.reference, step.dt);
+// Returns means of readings over windows. The filter is linear about its reference, and a hand
+// moves little within a window, so that coarse passes lose almost nothing (the idea of
+// preintegration: Forster, Carlone, Dellaert & Scaramuzza 2017).
+std::vector<InertialReading> windowsOf(const std::vector<InertialReading>& readings) {
+  std::vector<InertialReading> windows;
+  for (std::size_t begin = 0; begin < readings.size();) {
+    std::size_t end = begin;
+    InertialReading mean;
+    double count = 0, accelerations = 0, rates = 0;
+    for (; end < readings.size() && readings[end].t - readings[begin].t < kWindow; ++end) {
+      const InertialReading& reading = readings[end];
+      mean.t += reading.t - readings[begin].t;
+      mean.jerk += reading.jerk;
+      count += 1;
+      if (reading.has_acceleration) {
+        for (std::size_t i = 0; i < 4; ++i) mean.acceleration[i] += reading.acceleration[i];
+        mean.acceleration_variance += reading.acceleration_variance;
+        accelerations += 1;
+      }
+      if (reading.has_rate) {
+        mean.rate += reading.rate;
+        mean.rate_variance += reading.rate_variance;
+        rates += 1;
+      }
     }
-    if (event.sample)
-      useSample(state, event, step);
-    else
-      usePose(state, event, step);
-  }
-
- private:
-  void begin(State& state, const TipMotion& reference, bool first) const {
-    if (first) {
-      state = State();
-      state.P.diagonal().tail<4>().setConstant(options_.bias * options_.bias);
+    mean.t = readings[begin].t + mean.t / count;
+    mean.jerk /= count;
+    mean.has_acceleration = accelerations > 0;
+    mean.has_rate = rates > 0;
+    if (accelerations > 0) {
+      for (double& value : mean.acceleration) value /= accelerations;
+      mean.acceleration_variance /= accelerations * accelerations;
+      // The mean of a random walk differs from its value at the middle.
+      mean.acceleration_variance +=
+          mean.jerk.mean() * (readings[end - 1].t - readings[begin].t) / 12;
     }
-    constexpr int kMotion = State::kBias;
-    state.x.head<kMotion>().setZero();
-    state.P.topRows<kMotion>().setZero();
-    state.P.leftCols<kMotion>().setZero();
-    state.x.segment<3>(State::kTip) = reference.position;
-    state.x.segment<3>(State::kVelocity) = reference.velocity;
-    state.x.segment<3>(State::kAcceleration) = reference.acceleration;
-    const double wide[] = {0.02, 0.3, 5, 0.1, 2, 20};
-    for (int i = 0; i < 6; ++i) state.P.diagonal().segment<3>(3 * i).setConstant(wide[i] * wide[i]);
-  }
-
-  // The angle is counted from the reference, which turns otherwise than by a constant rate of rate.
-  static void followReference(State& state, const TipMotion& from, const TipMotion& to, double dt) {
-    const Eigen::Quaterniond expected =
-        from.orientation * expOf(dt * from.rate + 0.5 * dt * dt * from.rate_of_rate);
-    state.x.segment<3>(State::kAngle) -= logOf(expected.conjugate() * to.orientation);
-    state.x.segment<3>(State::kRate) -= to.rate - from.rate - dt * from.rate_of_rate;
-    state.x.segment<3>(State::kRateOfRate) -= to.rate_of_rate - from.rate_of_rate;
-  }
-
-  // How far the linear model may be off [m/s^2]: products of two errors of the reference. Nothing
-  // beside a sensor's noise but where the camera saw nothing for long; there, biases would bear it.
-  static double unmodelled(const TipMotion& reference, double arm) {
-    const double angle = reference.sigma_angle, rate = angle / kTurning;
-    const double acceleration = reference.sigma / (kTurning * kTurning);
-    return angle * (kStandardGravity * angle + acceleration) +
-           arm * rate * (rate + 2 * reference.rate.norm());
-  }
-
-  void useSample(State& state, const Event& event, FusedStep& step) const {
-    const TipMotion& reference = event.reference;
-    const Eigen::Matrix3d R = reference.orientation.toRotationMatrix();
-    const Vec3 held = R.transpose() * (reference.acceleration - options_.gravity);
-    for (std::size_t k = 0; k < probe_.axes.size(); ++k) {
-      const Vec3& axis = probe_.axes[k].direction;
-      const Vec3 arm = probe_.axes[k].position - probe_.tip;
-      const Vec3& rate = reference.rate;
-      const double constant =
-          axis.dot(reference.rate_of_rate.cross(arm) + rate.cross(rate.cross(arm))) -
-          (R * axis).dot(options_.gravity);
-      MeasuredRow row;
-      row.add(State::kAcceleration, R * axis);
-      row.add(State::kAngle, axis.cross(held));
-      row.add(State::kRateOfRate, arm.cross(axis));
-      row.add(State::kBias + static_cast<int>(k), 1);
-      const double off = unmodelled(reference, arm.norm());
-      step.used[step.count++] =
-          update(state, row, event.sample->acceleration[k] - constant - row.dot(state.x),
-                 probe_.accelerationVariance() + off * off);
+    if (rates > 0) {
+      mean.rate /= rates;
+      mean.rate_variance /= rates * rates;
     }
+    windows.push_back(mean);
+    begin = end;
   }
+  return windows;
+}
 
-  void usePose(State& state, const Event& event, FusedStep& step) const {
-    const CameraPose& pose = *event.pose;
-    const Eigen::Quaterniond& q = event.reference.orientation;
-    const Vec3 turn = logOf(q.conjugate() * pose.orientation.normalized());
-    const Vec3 place = pose.position + q * probe_.tip;
-    Eigen::Matrix3d cross;
-    cross << 0, -probe_.tip.z(), probe_.tip.y(), probe_.tip.z(), 0, -probe_.tip.x(),
-        -probe_.tip.y(), probe_.tip.x(), 0;
-    const Eigen::Matrix3d lever = q.toRotationMatrix() * cross;
-    for (int i = 0; i < 3; ++i) {
-      MeasuredRow row;
-      row.add(State::kAngle + i, 1);
-      step.used[step.count++] =
-          update(state, row, turn[i] - row.dot(state.x), pose.sigma_angle * pose.sigma_angle);
-    }
-    for (int i = 0; i < 3; ++i) {
-      MeasuredRow row;
-      row.add(State::kTip + i, 1);
-      row.add(State::kAngle, Vec3(lever.row(i)));
-      step.used[step.count++] = update(state, row, place[i] - row.dot(state.x),
-                                       pose.sigma_position * pose.sigma_position);
-    }
-  }
-
-  const std::vector<Event>& events_;
-  const ProbeModel& probe_;
-  const FusedOptions& options_;
-};
+std::vector<double> startsOf(const CameraTrack& track) {
+  std::vector<double> starts;
+  for (std::size_t k = 1; k < track.fast.size(); ++k)
+    if (track.fast[k].is_segment_start) starts.push_back(track.fast[k].t);
+  for (std::size_t k = 1; k < track.slow.size(); ++k)
+    if (track.slow[k].is_segment_start) starts.push_back(track.slow[k].t);
+  return starts;
+}
 
 class Innovations {
  public:
-  void add(const FusedStep& step, bool of_pose) {
+  void add(const FusionStep& step, const FusionEvent& event, bool has_rate) {
     for (std::size_t i = 0; i < step.count; ++i) {
-      Mean& mean = of_pose ? poses_ : axes_[i];
-      mean.sum += step.used[i].residual * step.used[i].residual / step.used[i].variance;
-      mean.count += 1;
+      const double nis = step.used[i].residual * step.used[i].residual / step.used[i].variance;
+      if (!std::isfinite(nis)) continue;
+      if (!event.is_segment_start) of(i, event, has_rate).add(nis);
     }
   }
-  void tell(FusedPath& fused) const {
+  void writeTo(FusedPath& fused) const {
     fused.pose_nis = poses_.value();
     for (std::size_t i = 0; i < axes_.size(); ++i) fused.axis_nis[i] = axes_[i].value();
   }
@@ -250,38 +166,331 @@ class Innovations {
  private:
   struct Mean {
     double sum = 0, count = 0;
+    void add(double value) { sum += value, count += 1; }
     double value() const { return count > 0 ? sum / count : 0; }
   };
-  Mean poses_;
+  Mean& of(std::size_t i, const FusionEvent& event, bool has_rate) {
+    if (event.pose >= 0) return poses_;
+    if (!has_rate) return axes_[i];
+    return i < 3 ? rates_ : axes_[i - 3];
+  }
+  Mean poses_, rates_;
   std::array<Mean, 4> axes_;
 };
 
-PathSample sampleFrom(const Event& event, const FusedStep& step, const Adjoint& adjoint) {
-  const State::Vector& x = step.x;
-  const Eigen::Matrix<double, 6, 1> change = step.columns.transpose().lazyProduct(adjoint.l);
-  PathSample sample;
-  sample.t = event.t;
-  sample.force = event.sample->force;
-  sample.gap = event.reference.gap;
-  sample.position = x.segment<3>(State::kTip) - change.head<3>();
-  sample.orientation =
-      event.reference.orientation * expOf(x.segment<3>(State::kAngle) - change.tail<3>());
-  // The difference of two variances has no more digits than they have: where the camera was away
-  // for long, nothing less than that is known.
-  constexpr double kRounding = 1e-10;
-  const auto sigmaOf = [&](int at, int column) {
-    double trace = 0, least = 0;
-    for (int i = 0; i < 3; ++i) {
-      const auto known = step.columns.col(column + i);
-      const State::Vector learnt = adjoint.L.lazyProduct(known);
-      trace += known[at + i] - known.dot(learnt);
-      least += kRounding * known[at + i];
+// Returns the same events with time reversed, in which velocities and rates change their signs.
+std::vector<FusionEvent> reversed(const std::vector<FusionEvent>& events) {
+  std::vector<FusionEvent> backwards(events.rbegin(), events.rend());
+  for (std::size_t k = 0; k < backwards.size(); ++k) {
+    FusionEvent& event = backwards[k];
+    event.t = -event.t;
+    event.reference.velocity *= -1;
+    event.reference.rate *= -1;
+    // A segment starts in reverse where the next one starts.
+    event.is_segment_start = k == 0 || events[events.size() - k].is_segment_start;
+  }
+  return backwards;
+}
+
+// Returns the camera's motion at the windows, turned by the gyroscope where the camera has gaps.
+ReferenceMotion firstReference(const CameraTrack& track,
+                               const std::vector<InertialReading>& windows) {
+  std::vector<double> times;
+  std::vector<TipMotion> nodes;
+  for (const InertialReading& window : windows) {
+    if (!window.has_rate) continue;
+    times.push_back(window.t);
+    nodes.push_back(motionAt(track, window.t));
+  }
+  std::vector<Vec3> rates;
+  for (const InertialReading& window : windows)
+    if (window.has_rate) rates.push_back(window.rate);
+  constexpr double kDrift = 0.02; // deviation of the turned orientation [rad]
+  for (std::size_t begin = 1; begin < nodes.size(); ++begin) {
+    if (!nodes[begin].gap) continue;
+    std::size_t end = begin; // first node after the gap
+    while (end < nodes.size() && nodes[end].gap) ++end;
+    std::vector<Eigen::Quaterniond> turned{nodes[begin - 1].orientation};
+    for (std::size_t k = begin; k <= end && k < nodes.size(); ++k) {
+      const Vec3 turn = 0.5 * (times[k] - times[k - 1]) * (rates[k - 1] + rates[k]);
+      turned.push_back(turned.back() * rotationOf(turn));
     }
-    return std::sqrt(std::max({trace, least, 0.}) / 3);
-  };
-  sample.sigma = sigmaOf(State::kTip, 0);
-  sample.sigma_angle = sigmaOf(State::kAngle, 3);
-  return sample;
+    const Vec3 missed = end < nodes.size()
+                            ? rotationVector(turned.back().conjugate() * nodes[end].orientation)
+                            : Vec3(0, 0, 0);
+    for (std::size_t k = begin; k < end; ++k) {
+      const double share =
+          end < nodes.size() ? (times[k] - times[begin - 1]) / (times[end] - times[begin - 1]) : 0;
+      nodes[k].orientation = turned[k - begin + 1] * rotationOf(share * missed);
+      nodes[k].rate = rates[k];
+      nodes[k].rate_of_rate.setZero();
+      nodes[k].sigma_angle = std::min(nodes[k].sigma_angle, kDrift);
+    }
+    begin = end;
+  }
+  return ReferenceMotion(track, std::move(times), std::move(nodes));
+}
+
+// A fusion's working state: the weights of the poses and the reference get better in each pass.
+class Fusion {
+ public:
+  Fusion(const CameraTrack& track, const std::vector<CameraPose>& poses,
+         const std::vector<InertialReading>& readings, const ProbeModel& probe,
+         const FusedOptions& options, Progress& progress)
+      : track_(track), readings_(readings), windows_(windowsOf(readings)), starts_(startsOf(track)),
+        reference_(firstReference(track, windows_)), weights_(poses.size(), 0),
+        scores_(poses.size()), input_{poses,           weights_,     probe,
+                                      options.gravity, options.bias, options.rate_bias},
+        progress_(progress) {
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      weights_[i] =
+          track.verdicts[i] == PoseVerdict::used || track.verdicts[i] == PoseVerdict::outlier ? 1
+                                                                                              : 0;
+    first_weights_ = weights_;
+  }
+
+  // Weighs each pose by its innovation in the better one of both directions of time, since a pose
+  // beside a gap cannot be tested from one side.
+  void weighBothWays() {
+    weights_ = first_weights_;
+    std::vector<FusionEvent> events = fusionEvents(windows_, input_, starts_, reference_, noise_);
+    std::vector<double> least(weights_.size(), INFINITY);
+    std::vector<InertialReading> readings = windows_;
+    for (const bool back : {false, true}) {
+      if (back) {
+        events = reversed(events);
+        for (InertialReading& reading : readings) reading.rate *= -1;
+      }
+      FusionPass pass(events, readings, input_, scales_);
+      pass.softenPoses();
+      pass.run(
+          [&](std::size_t k, const FusionStep& step) {
+            if (k == events.size() || events[k].pose < 0) return;
+            double& variance = least[static_cast<std::size_t>(events[k].pose)];
+            variance = std::min(variance, step.pose_variance);
+          },
+          nullptr, progress_);
+    }
+    for (std::size_t i = 0; i < weights_.size(); ++i)
+      if (weights_[i] > 0) weights_[i] = 1 / least[i];
+  }
+
+  // Smooths the means over windows, weighs the poses and linearises about the result.
+  void refine() {
+    const std::vector<FusionEvent> events =
+        fusionEvents(windows_, input_, starts_, reference_, noise_);
+    const FusionPass pass(events, windows_, input_, scales_);
+    std::vector<double> times(events.size());
+    std::vector<TipMotion> nodes(events.size());
+    pass.run(
+        nullptr,
+        [&](std::size_t k, const FusionStep& step, const BrysonFrazierState& adjoint) {
+          times[k] = events[k].t;
+          nodes[k] = smoothedMotion(events[k], step, adjoint);
+          if (events[k].pose < 0) return;
+          const auto i = static_cast<std::size_t>(events[k].pose);
+          scores_[i] = scoreOf(input_.poses[i], step.pose_variance, events[k], step, adjoint,
+                               input_.probe.tip);
+        },
+        progress_);
+    weigh();
+    reference_ = ReferenceMotion(track_, std::move(times), std::move(nodes));
+  }
+
+  void forgetWeights() { weights_ = first_weights_; }
+
+  // Chooses the factor of a sensor's variance by the likelihood of the poses.
+  void chooseVariance(double FusionScales::*factor, std::initializer_list<double> factors) {
+    double least = INFINITY;
+    FusionScales best = scales_;
+    for (const double value : factors) {
+      FusionScales trial = scales_;
+      trial.*factor = value;
+      const std::vector<double> deviances = devianceOfPoses(noise_, trial, false);
+      double sum = 0;
+      for (const double deviance : deviances) sum += deviance;
+      if (!(sum < least)) break;
+      least = sum;
+      best = trial;
+    }
+    scales_ = best;
+  }
+
+  // Chooses the process noise of each few poses by their likelihood: a hand that rests needs less
+  // than one that taps. An interval gets the largest noise of its neighbours, too.
+  void chooseNoise() {
+    constexpr double kPreference = 2; // gain in deviance that a larger noise needs
+    const NoiseInterval kinds[] = {{0, 1, 1}, {0, 8, 3}, {0, 64, 8}};
+    std::vector<std::vector<double>> deviances;
+    for (const NoiseInterval& kind : kinds)
+      deviances.push_back(devianceOfPoses({kind}, scales_, true));
+    const std::vector<double>& first = deviances[0];
+    const std::size_t count = (first.size() + kPosesPerInterval - 1) / kPosesPerInterval;
+    std::vector<std::size_t> best(count, 0);
+    for (std::size_t b = 0; b < count; ++b) {
+      const std::size_t begin = b * kPosesPerInterval,
+                        end = std::min(begin + kPosesPerInterval, first.size());
+      double least = INFINITY;
+      for (std::size_t kind = 0; kind < deviances.size(); ++kind) {
+        double sum = kPreference * static_cast<double>(kind);
+        for (std::size_t i = begin; i < end; ++i) sum += deviances[kind][i];
+        if (!(sum < least)) continue;
+        least = sum;
+        best[b] = kind;
+      }
+    }
+    noise_.clear();
+    std::size_t used = 0, interval = 0;
+    const auto add = [&](double until) {
+      const std::size_t from = interval - std::min<std::size_t>(interval, 1),
+                        to = std::min(interval + 2, count);
+      NoiseInterval kind = kinds[*std::max_element(best.begin() + std::ptrdiff_t(from),
+                                                   best.begin() + std::ptrdiff_t(to))];
+      kind.until = until;
+      noise_.push_back(kind);
+      ++interval;
+    };
+    double last = 0;
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      if (!(weights_[i] > 0)) continue;
+      last = input_.poses[i].t;
+      if (++used % kPosesPerInterval == 0) add(last);
+    }
+    if (interval < count) add(last);
+  }
+
+  const std::vector<PoseScore>& scores() const { return scores_; }
+
+  void writeTo(FusedPath& fused) {
+    const std::vector<FusionEvent> events =
+        fusionEvents(readings_, input_, starts_, reference_, noise_);
+    const FusionPass pass(events, readings_, input_, scales_);
+    pass.run(
+        [&](std::size_t k, const FusionStep& step) {
+          if (k < events.size()) return;
+          const ErrorState& last = step.state;
+          for (std::size_t i = 0; i < 4; ++i)
+            fused.bias[i] = last.x[ErrorState::kBias + static_cast<int>(i)];
+          fused.rate_bias = last.x.segment<3>(ErrorState::kRateBias);
+        },
+        [&](std::size_t k, const FusionStep& step, const BrysonFrazierState& adjoint) {
+          const FusionEvent& event = events[k];
+          if (event.reading < 0) return;
+          const InertialReading& reading = readings_[static_cast<std::size_t>(event.reading)];
+          if (!reading.is_sample) return;
+          const TipMotion motion = smoothedMotion(event, step, adjoint);
+          PathSample sample;
+          sample.t = event.t;
+          sample.force = reading.force;
+          sample.position = motion.position;
+          sample.orientation = motion.orientation;
+          sample.sigma = motion.sigma;
+          sample.sigma_angle = motion.sigma_angle;
+          fused.path.push_back(sample);
+        },
+        progress_);
+    std::reverse(fused.path.begin(), fused.path.end());
+    writeInnovations(fused);
+  }
+
+ private:
+  // Compares the streams by the stated variances: those that were chosen would hide a wrong rig.
+  void writeInnovations(FusedPath& fused) {
+    const std::vector<FusionEvent> events =
+        fusionEvents(readings_, input_, starts_, firstReference(track_, windows_), {});
+    const FusionPass pass(events, readings_, input_, {});
+    Innovations innovations;
+    pass.run(
+        [&](std::size_t k, const FusionStep& step) {
+          if (k < events.size()) innovations.add(step, events[k], hasRate(readings_, events[k]));
+        },
+        nullptr, progress_);
+    innovations.writeTo(fused);
+  }
+
+  // Sets the weights by the scores. An outlier raises the scores of its neighbours, so that only
+  // the worst pose of a neighbourhood loses weight at first.
+  void weigh() {
+    constexpr std::size_t kNeighbours = 3;
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < weights_.size(); ++i)
+      if (weights_[i] > 0) used.push_back(i);
+    const std::vector<double> before = weights_;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+      const std::size_t i = used[k];
+      bool is_worst = true;
+      for (std::size_t j = k - std::min(k, kNeighbours);
+           j < std::min(k + kNeighbours + 1, used.size()); ++j)
+        is_worst = is_worst && (scores_[used[j]].nis <= scores_[i].nis || before[used[j]] < 0.3);
+      const bool waits = scores_[i].nis > kOutlier && !is_worst && before[i] >= 0.3;
+      weights_[i] = waits ? 1 : scores_[i].nis > kOutlier ? kRejected : scores_[i].weight;
+    }
+  }
+
+  // Returns -2 log likelihood of each used pose, given all measurements before it.
+  std::vector<double> devianceOfPoses(const std::vector<NoiseInterval>& noise,
+                                      const FusionScales& scales, bool cross) {
+    const std::vector<FusionEvent> events =
+        fusionEvents(windows_, input_, starts_, reference_, noise);
+    FusionPass pass(events, windows_, input_, scales);
+    pass.softenPoses();
+    std::vector<double> deviances;
+    if (cross) {
+      pass.run(
+          nullptr,
+          [&](std::size_t k, const FusionStep& step, const BrysonFrazierState& adjoint) {
+            if (events[k].pose < 0) return;
+            const PoseScore score =
+                scoreOf(input_.poses[std::size_t(events[k].pose)], step.pose_variance, events[k],
+                        step, adjoint, input_.probe.tip);
+            deviances.push_back(score.volume + std::min(score.nis, 33.));
+          },
+          progress_);
+      std::reverse(deviances.begin(), deviances.end());
+      return deviances;
+    }
+    pass.run(
+        [&](std::size_t k, const FusionStep& step) {
+          if (k == events.size() || events[k].pose < 0) return;
+          deviances.push_back(step.pose_deviance);
+        },
+        nullptr, progress_);
+    return deviances;
+  }
+
+  static bool hasRate(const std::vector<InertialReading>& readings, const FusionEvent& event) {
+    return event.reading >= 0 && readings[static_cast<std::size_t>(event.reading)].has_rate;
+  }
+
+  const CameraTrack& track_;
+  const std::vector<InertialReading>& readings_;
+  std::vector<InertialReading> windows_;
+  std::vector<double> starts_;
+  ReferenceMotion reference_;
+  std::vector<double> weights_, first_weights_;
+  std::vector<PoseScore> scores_;
+  FusionInput input_;
+  FusionScales scales_;
+  std::vector<NoiseInterval> noise_;
+  Progress& progress_;
+};
+
+// Marks samples far from any used pose.
+void markGaps(std::vector<PathSample>& path, const std::vector<CameraPose>& poses,
+              const CameraTrack& track) {
+  std::vector<double> seen;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (track.verdicts[i] == PoseVerdict::used) seen.push_back(poses[i].t);
+  const double longest = track.options.longest_gap;
+  for (PathSample& sample : path) {
+    const auto after = std::lower_bound(seen.begin(), seen.end(), sample.t);
+    if (after != seen.end() && *after == sample.t) continue;
+    const bool inside = after != seen.begin() && after != seen.end();
+    sample.gap = seen.empty() ||
+                 (inside ? *after - *(after - 1) > longest
+                         : std::abs(sample.t - (after == seen.end() ? seen.back() : seen.front())) >
+                               longest);
+  }
 }
 
 } // namespace
@@ -296,63 +505,44 @@ CameraTrack firstPass(const std::vector<CameraPose>& poses, const ProbeModel& pr
 
 FusedPath fuseWith(CameraTrack track, const std::vector<CameraPose>& poses,
                    const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                   const FusedOptions& options, Progress& progress) {
+                   const FusedOptions& options, Progress& progress,
+                   const std::vector<RateSample>& rates) {
   FusedPath fused;
   fused.track = std::move(track);
   if (fused.track.empty()) return fused;
-  const std::vector<Event> events = eventsOf(poses, fused.track, usable(samples), probe);
-  const Fusion fusion(events, probe, options);
-  std::vector<State> kept;
-  State state;
-  std::vector<FusedStep> steps(kBlock);
-  Innovations innovations;
-  for (std::size_t k = 0; k < events.size(); ++k) {
-    if (k % kBlock == 0) {
-      progress.throwIfCancelled();
-      progress.report(0.4 * static_cast<double>(k) / static_cast<double>(events.size()), "filter");
-      kept.push_back(state);
-    }
-    fusion.advance(state, k, steps[0]);
-    if (!events[k].starts) innovations.add(steps[0], events[k].pose != nullptr);
-  }
-  innovations.tell(fused);
-  for (std::size_t i = 0; i < 4; ++i) fused.bias[i] = state.x[State::kBias + static_cast<int>(i)];
+  const std::vector<InertialReading> readings = readingsOf(usable(samples), rates, probe);
+  Fusion fusion(fused.track, poses, readings, probe, options, progress);
+  progress.report(0.1, "filter");
+  fusion.weighBothWays();
+  fusion.refine();
+  fusion.forgetWeights();
+  if (!rates.empty()) fusion.chooseVariance(&FusionScales::rate, {1, 10, 100, 1000});
+  fusion.chooseVariance(&FusionScales::acceleration, {1, 4, 16, 64, 256});
+  fusion.chooseNoise();
+  fusion.weighBothWays();
+  fusion.refine();
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (fused.track.verdicts[i] == PoseVerdict::used ||
+        fused.track.verdicts[i] == PoseVerdict::outlier)
+      fused.track.verdicts[i] =
+          fusion.scores()[i].nis > kOutlier ? PoseVerdict::outlier : PoseVerdict::used;
+  progress.report(0.4, "smoother");
   fused.path.reserve(samples.size());
-  Adjoint adjoint;
-  for (std::size_t block = kept.size(); block-- > 0;) {
-    progress.throwIfCancelled();
-    progress.report(1 - 0.6 * static_cast<double>(block) / static_cast<double>(kept.size()),
-                    "smoother");
-    const std::size_t begin = block * kBlock, end = std::min(begin + kBlock, events.size());
-    state = kept[block];
-    for (std::size_t k = begin; k < end; ++k) {
-      FusedStep& step = steps[k - begin];
-      fusion.advance(state, k, step);
-      step.x = state.x;
-      step.columns << state.P.middleCols<3>(State::kTip), state.P.middleCols<3>(State::kAngle);
-    }
-    for (std::size_t k = end; k-- > begin;) {
-      const FusedStep& step = steps[k - begin];
-      if (events[k].sample) fused.path.push_back(sampleFrom(events[k], step, adjoint));
-      for (std::size_t i = step.count; i-- > 0;) adjoint.backThrough(step.used[i]);
-      if (events[k].starts)
-        adjoint.forget();
-      else
-        adjoint.backThroughStep(step.dt);
-    }
-  }
-  std::reverse(fused.path.begin(), fused.path.end());
+  fusion.writeTo(fused);
+  markGaps(fused.path, poses, fused.track);
   for (const PathSample& sample : fused.path)
     if (!sample.position.allFinite() || !(sample.sigma >= 0) || !std::isfinite(sample.sigma))
-      throw Error("the filter knows nothing at " + formatNumber(sample.t) +
-                  " s: poses and probe are too far apart in time or place");
+      throw Error("the filter has no result at " + formatNumber(sample.t) +
+                  " s: poses and probe are too far apart in time or position");
   return fused;
 }
 
 FusedPath fusePath(const std::vector<CameraPose>& poses, const std::vector<ProbeSample>& samples,
-                   const ProbeModel& probe, const FusedOptions& options) {
+                   const ProbeModel& probe, const FusedOptions& options,
+                   const std::vector<RateSample>& rates) {
   Progress progress;
-  return fuseWith(firstPass(poses, probe, options), poses, samples, probe, options, progress);
+  return fuseWith(firstPass(poses, probe, options), poses, samples, probe, options, progress,
+                  rates);
 }
 
 } // namespace patina

@@ -1,4 +1,4 @@
-#include "acquisition/firmware/probe_packer.h"
+#include "probe_packer.h"
 
 #include <string.h>
 
@@ -21,7 +21,7 @@ uint32_t probe_crc(const uint8_t* bytes, size_t count) {
   return ~crc_more(0xffffffffu, bytes, count);
 }
 
-// Lowest byte first, whatever the processor.
+// Little endian on any processor.
 static void put(uint8_t* at, uint64_t value, unsigned bytes) {
   for (unsigned i = 0; i < bytes; ++i) at[i] = (uint8_t)(value >> (8 * i));
 }
@@ -32,6 +32,10 @@ static void put_float(uint8_t* at, float value) {
   put(at, bits, 4);
 }
 
+static unsigned channels_of(const probe_description* of) {
+  return of->gyroscope ? PROBE_MAX_CHANNELS : PROBE_CHANNELS;
+}
+
 static void part_content(const probe_description* of, unsigned part, unsigned most,
                          uint8_t at[kContent]) {
   memset(at, 0, kContent);
@@ -40,7 +44,7 @@ static void part_content(const probe_description* of, unsigned part, unsigned mo
     memcpy(at + 16, of->serial, 16);
     put(at + 32, of->firmware, 4);
     put(at + 36, of->period_ns, 4);
-    put(at + 40, PROBE_CHANNELS, 2);
+    put(at + 40, channels_of(of), 2);
     put(at + 42, most, 2);
     return;
   }
@@ -59,11 +63,13 @@ void probe_start(probe_packer* packer, const probe_description* description,
                  unsigned samples_per_packet) {
   memset(packer, 0, sizeof *packer);
   packer->description = description;
-  packer->most = samples_per_packet < 1               ? 1
-                 : samples_per_packet > PROBE_SAMPLES ? PROBE_SAMPLES
-                                                      : samples_per_packet;
+  packer->channels = channels_of(description);
+  const unsigned fit = sizeof packer->waiting / (2 * packer->channels);
+  packer->most = samples_per_packet < 1     ? 1
+                 : samples_per_packet > fit ? fit
+                                            : samples_per_packet;
   uint32_t crc = 0xffffffffu;
-  for (unsigned part = 0; part < PROBE_PARTS; ++part) {
+  for (unsigned part = 0; part < probe_parts(packer); ++part) {
     uint8_t content[kContent];
     part_content(description, part, packer->most, content);
     crc = crc_more(crc, content, kContent);
@@ -71,20 +77,24 @@ void probe_start(probe_packer* packer, const probe_description* description,
   packer->id = ~crc;
 }
 
-int probe_add(probe_packer* packer, const int16_t counts[PROBE_CHANNELS], uint64_t time_ns,
-              uint8_t flags, uint8_t packet[PROBE_PACKET]) {
+unsigned probe_parts(const probe_packer* packer) {
+  return 1 + packer->channels;
+}
+
+int probe_add(probe_packer* packer, const int16_t* counts, uint64_t time_ns, uint8_t flags,
+              uint8_t packet[PROBE_PACKET]) {
   if (packer->count == 0) {
     packer->time_ns = time_ns;
     packer->flags = 0;
     memset(packer->waiting, 0, sizeof packer->waiting);
   }
   packer->flags |= flags;
-  uint8_t* const at = packer->waiting + packer->count * PROBE_CHANNELS * 2;
-  for (unsigned i = 0; i < PROBE_CHANNELS; ++i) put(at + 2 * i, (uint16_t)counts[i], 2);
+  uint8_t* const at = packer->waiting + packer->count * packer->channels * 2;
+  for (unsigned i = 0; i < packer->channels; ++i) put(at + 2 * i, (uint16_t)counts[i], 2);
   if (++packer->count < packer->most) return 0;
 
   packet[0] = PROBE_PROTOCOL;
-  packet[1] = 1; // samples
+  packet[1] = packer->channels == PROBE_CHANNELS ? 1 : 3; // samples, or those with a gyroscope
   packet[2] = (uint8_t)packer->count;
   packet[3] = packer->flags;
   put(packet + 4, packer->packets, 4);
@@ -99,11 +109,11 @@ int probe_add(probe_packer* packer, const int16_t counts[PROBE_CHANNELS], uint64
 }
 
 void probe_describe(const probe_packer* packer, unsigned part, uint8_t packet[PROBE_PACKET]) {
-  if (part >= PROBE_PARTS) part = 0;
+  if (part >= probe_parts(packer)) part = 0;
   packet[0] = PROBE_PROTOCOL;
   packet[1] = 2; // description
   packet[2] = (uint8_t)part;
-  packet[3] = PROBE_PARTS;
+  packet[3] = (uint8_t)probe_parts(packer);
   put(packet + 4, 0, 4);
   put(packet + 8, packer->id, 4);
   part_content(packer->description, part, packer->most, packet + 12);
@@ -111,7 +121,7 @@ void probe_describe(const probe_packer* packer, unsigned part, uint8_t packet[PR
 }
 
 void probe_frame(const uint8_t packet[PROBE_PACKET], uint8_t frame[PROBE_FRAME]) {
-  unsigned from = 0, to = 1; // `from`: where the count of the stretch under way stands
+  unsigned from = 0, to = 1; // `from`: position of the current run's count
   for (unsigned i = 0; i < PROBE_PACKET; ++i) {
     if (packet[i] == 0) {
       frame[from] = (uint8_t)(to - from);

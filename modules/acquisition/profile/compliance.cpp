@@ -6,8 +6,8 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kSmooth = 7; // samples to either side
-constexpr double kPause = 0.05;    // between samples: beyond it another press begins [s]
+constexpr std::size_t kSmooth = 7; // samples on each side
+constexpr double kPause = 0.05;    // longer pauses between samples start another press [s]
 
 struct Loading {
   std::size_t begin, end;
@@ -24,17 +24,17 @@ std::vector<double> smoothedForces(const std::vector<PressSample>& samples) {
   return smooth;
 }
 
-// Rises of the force from a low to the next high, chosen by force alone: a choice by displacement
-// would favour its noise.
-std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double least_rise) {
+// Returns rises of the force from a minimum to the next maximum. They are chosen by the force
+// alone, because a choice by displacement would favour its noise.
+std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double min_force_rise) {
   std::vector<Loading> loadings;
   if (samples.empty()) return loadings;
   const std::vector<double> force = smoothedForces(samples);
-  const double back = 0.1 * least_rise; // less than this is noise
+  const double back = 0.1 * min_force_rise; // smaller drops are noise
   std::size_t low = 0, high = 0;
   const auto close = [&] {
-    if (force[high] - force[low] < least_rise) return;
-    // Where it has begun and not yet ended.
+    if (force[high] - force[low] < min_force_rise) return;
+    // Leaves out the first and last 2 % of the rise.
     const double rise = force[high] - force[low];
     std::size_t begin = low, end = high;
     while (begin < end && force[begin] < force[low] + 0.02 * rise) ++begin;
@@ -60,9 +60,9 @@ std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double 
   return loadings;
 }
 
-// Of Student's distribution, what two thirds (erf(1/sqrt 2)) lie below, by its expansion at one: a
-// deviation that so few values show is often too small.
-double studentsShare(double freedom) {
+// Returns the quantile of Student's t at the probability erf(1/sqrt 2) within +-t, expanded about
+// infinitely many degrees of freedom; few values need a wider interval.
+double studentQuantile(double freedom) {
   const double v = 1 / freedom;
   return 1 + v * (0.5 + v * (0.25 + 0.0625 * v));
 }
@@ -74,13 +74,14 @@ struct Moments {
 } // namespace
 
 std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
-                                                     double force_sigma, bool alike_in_a_press,
-                                                     double least_rise) {
-  const std::vector<Loading> loadings = loadingsOf(samples, least_rise);
+                                                     double force_sigma,
+                                                     bool correlated_within_press,
+                                                     double min_force_rise) {
+  const std::vector<Loading> loadings = loadingsOf(samples, min_force_rise);
   if (loadings.empty()) return std::nullopt;
   ComplianceEstimate estimate;
   Moments m;
-  std::vector<double> f, x; // from the mean of their loading
+  std::vector<double> f, x; // deviations from the mean of their loading
   std::vector<bool> first;
   for (const Loading& loading : loadings) {
     const double n = static_cast<double>(loading.end - loading.begin);
@@ -99,35 +100,35 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
     }
     m.freedom += n - 1;
   }
-  // What force varies by beside its own noise.
   const double force_variance = force_sigma * force_sigma;
   const double true_forces = m.forces - m.freedom * force_variance;
   if (!(true_forces > 0) || !(m.mixed > 0) || m.freedom < 3) return std::nullopt;
   const double C = m.mixed / true_forces;
   double squares = 0, lagged = 0, pairs = 0;
-  std::vector<double> pulls; // of each loading on the slope
+  std::vector<double> influences; // influence of each loading on the slope
   for (std::size_t i = 0; i < f.size(); ++i) {
     const double residual = x[i] - C * f[i];
     squares += residual * residual;
-    if (first[i]) pulls.push_back(0);
-    pulls.back() += f[i] * residual;
+    if (first[i]) influences.push_back(0);
+    influences.back() += f[i] * residual;
     if (first[i]) continue;
     lagged += residual * (x[i - 1] - C * f[i - 1]);
     pairs += 1;
   }
   const double residual_variance = squares / (m.freedom - 1);
-  // Neighbours that err alike count for fewer; as an autoregressive noise of first order would.
+  // Autocorrelated residuals count for fewer, as for a first-order autoregressive noise.
   const double n = static_cast<double>(f.size());
-  const double alike = std::clamp(lagged / pairs / (squares / n) + 1 / n, -0.95, 0.995);
-  const double fewer = std::max((1 + alike) / (1 - alike), 1e-3);
+  const double autocorrelation = std::clamp(lagged / pairs / (squares / n) + 1 / n, -0.95, 0.995);
+  const double samples_per_independent =
+      std::max((1 + autocorrelation) / (1 - autocorrelation), 1e-3);
   estimate.compliance = C;
-  // The second term is the force's noise, also as it enters its own variance.
+  // The second term is the noise of the forces, also in the sum that was corrected for it.
   estimate.compliance_deviation =
-      std::sqrt(fewer * residual_variance / true_forces +
+      std::sqrt(samples_per_independent * residual_variance / true_forces +
                 m.freedom * force_variance * (residual_variance + C * C * force_variance) /
                     (true_forces * true_forces));
-  const double presses = static_cast<double>(pulls.size());
-  if (alike_in_a_press && presses == 1) {
+  const double presses = static_cast<double>(influences.size());
+  if (correlated_within_press && presses == 1) {
     const Loading& press = loadings[0];
     double squares_of_sigma = 0;
     for (std::size_t i = press.begin; i < press.end; ++i)
@@ -136,14 +137,14 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
     estimate.compliance_deviation =
         std::max(estimate.compliance_deviation, std::sqrt(2 * squares_of_sigma) / (*most - *least));
   }
-  if (alike_in_a_press && presses > 1) {
+  if (correlated_within_press && presses > 1) {
     double sum = 0;
-    for (const double pull : pulls) sum += pull * pull;
+    for (const double pull : influences) sum += pull * pull;
     estimate.compliance_deviation = std::max(
         estimate.compliance_deviation,
-        studentsShare(presses - 1) * std::sqrt(sum * presses / (presses - 1)) / true_forces);
+        studentQuantile(presses - 1) * std::sqrt(sum * presses / (presses - 1)) / true_forces);
   }
-  // 1 / C is too large on the mean by the square of C's relative deviation.
+  // The mean of 1 / C is too large by the square of C's relative deviation.
   const double relative = estimate.compliance_deviation / C;
   estimate.stiffness = 1 / (C * (1 + relative * relative));
   estimate.stiffness_deviation = estimate.stiffness * relative;

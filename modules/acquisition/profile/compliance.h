@@ -1,4 +1,4 @@
-// How far a surface yields, from presses (A08).
+// Estimates a surface's compliance from presses (A08).
 #pragma once
 
 #include <optional>
@@ -8,34 +8,31 @@ namespace patina {
 
 struct PressSample {
   double t = 0;            // [s]
-  double displacement = 0; // into the surface, from anywhere [m]
+  double displacement = 0; // into the surface, from any origin [m]
   double force = 0;        // [N]
-  double sigma = 0; // of the displacement's error that lasts as long as a press [m]; 0 = not known
+  double sigma = 0;        // displacement error common to a press [m]; 0: unknown
 };
 
 struct ComplianceEstimate {
-  double compliance = 0, compliance_deviation = 0; // [m/N], and its standard deviation
+  double compliance = 0, compliance_deviation = 0; // value and standard deviation [m/N]
   double stiffness = 0, stiffness_deviation = 0;   // [N/m]
-  double displacement_noise = 0;                   // standard deviation that the samples show [m]
+  double displacement_noise = 0;                   // standard deviation of the residuals [m]
   std::size_t samples = 0, loadings = 0;
 
-  bool isTold() const { return compliance > 2 * compliance_deviation; } // else it may be rigid
+  bool isSignificant() const { return compliance > 2 * compliance_deviation; }
 };
 
-// Slope of displacement against force over the loading parts of presses, each with a zero of its
-// own: unloading would mix in what the material keeps. Both have errors: force that of
-// `force_sigma` [N], displacement what the samples show. Plain regression of force on displacement
-// takes the noise of the displacement for yielding, and is 42 % too soft at 3000 N/m with 0.3 mm.
-// The deviation counts the noise as correlated from sample to sample as the residuals are;
-// `alike_in_a_press`: as at least what the presses differ by among themselves, for displacements
-// whose errors last as long as one, such as a smoothed path's; with few presses as much wider as
-// two of three intervals of one deviation, either way, need to hold the truth; a single press tells
-// no difference, and is as uncertain as its samples' `sigma` makes the rise.
-// Samples more than 0.05 s apart belong to two presses. nullopt without a loading of at least
-// `least_rise` [N].
+// Estimates the slope of displacement against force over the loading parts of presses, each with
+// its own zero; unloading would include hysteresis. Both variables have errors: `force_sigma` [N],
+// and the scatter of the displacement. Regression of force on displacement would be biased by the
+// displacement's noise, by 42 % at 3000 N/m with 0.3 mm.
+// The deviation accounts for the autocorrelation of the residuals. With `correlated_within_press`
+// it is at least the scatter between presses, widened by Student's t for few presses; a single
+// press uses the samples' own `sigma`. Pauses of more than 0.05 s separate presses. Returns nullopt
+// without a loading of at least `min_force_rise` [N].
 std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
                                                      double force_sigma,
-                                                     bool alike_in_a_press = false,
-                                                     double least_rise = 0.3);
+                                                     bool correlated_within_press = false,
+                                                     double min_force_rise = 0.3);
 
 } // namespace patina

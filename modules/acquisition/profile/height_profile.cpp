@@ -3,18 +3,65 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/profile/rough_process.h"
-
 namespace patina {
 namespace {
 
-// Roughness (4), bias of the acceleration (1), and with a camera the shape that carries the
-// roughness: height, slope and curvature (3), in the same powers of the wave number.
+constexpr double kDrive = 6.4; // noise density for an rms of 1
+
+// exp(F u) e^u, where F is the companion matrix of (1 + d/du)^4; the series is finite.
+RoughSquare transition(double u) {
+  RoughSquare N = RoughSquare::Identity();
+  N(0, 1) = N(1, 2) = N(2, 3) = 1;
+  N.row(3) += Eigen::RowVector4d(-1, -4, -6, -4);
+  const RoughSquare N2 = N * N;
+  return std::exp(-u) * (RoughSquare::Identity() + u * N + u * u / 2 * N2 + u * u * u / 6 * N2 * N);
+}
+
+} // namespace
+
+RoughSquare roughCovariance() {
+  RoughSquare P;
+  P << 1, 0, -0.2, 0, 0, 0.2, 0, -0.2, -0.2, 0, 0.2, 0, 0, -0.2, 0, 1;
+  return P;
+}
+
+MaternStep maternTransition(double distance) {
+  MaternStep step;
+  step.A = transition(distance);
+  if (distance > 0.3) {
+    const RoughSquare P = roughCovariance();
+    step.Q = P - step.A * P * step.A.transpose();
+    return step;
+  }
+  // The integral avoids a difference that would cancel; Gauss-Legendre rule of 6 points.
+  constexpr double kAt[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
+  constexpr double kWeight[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
+  step.Q.setZero();
+  for (int i = 0; i < 3; ++i)
+    for (const double side : {-1., 1.}) {
+      const MaternState column = transition(distance / 2 * (1 + side * kAt[i])).col(3);
+      step.Q += kDrive * kWeight[i] * distance / 2 * column * column.transpose();
+    }
+  return step;
+}
+
+MaternStep reversalMatrix(double cosine) {
+  MaternStep turn;
+  turn.A = MaternState(1, cosine, cosine * cosine, cosine * cosine * cosine).asDiagonal();
+  const RoughSquare P = roughCovariance();
+  turn.Q = P - turn.A * P * turn.A.transpose();
+  return turn;
+}
+
+namespace {
+
+// State: roughness (4), bias of the acceleration (1), and with a camera the underlying shape:
+// height, slope and curvature (3), in the same powers of the wave number.
 constexpr int kRough = 0, kBias = 4, kShape = 5, kMost = 8;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
 
-// Shapes curve to a radius of 10 mm and back within 20 mm, begin anywhere within 0.1 m.
+// Prior of the shape: radius of curvature 10 mm, length 20 mm, start within 0.1 m.
 constexpr double kShapeCurvature = 100; // [1/m]
 constexpr double kShapeLength = 0.02;   // [m]
 constexpr double kShapeHeight = 0.1;    // [m]
@@ -54,14 +101,14 @@ class Profiler {
                Square& A) const {
     A = Square::Identity(size_, size_);
     Square Q = Square::Zero(size_, size_);
-    const double u = wave_ * (to.along - from.along);
+    const double u = wave_ * (to.arc_length - from.arc_length);
     if (u > 0) {
-      const RoughStep step = roughStep(u);
+      const MaternStep step = maternTransition(u);
       A.topLeftCorner<4, 4>() = step.A;
       Q.topLeftCorner<4, 4>() = rms_ * rms_ * step.Q;
     }
-    if (to.turn < 1) {
-      const RoughStep turn = roughTurn(to.turn);
+    if (to.direction_cosine < 1) {
+      const MaternStep turn = reversalMatrix(to.direction_cosine);
       A.topLeftCorner<4, 4>() = turn.A * A.topLeftCorner<4, 4>();
       Q.topLeftCorner<4, 4>() = turn.A * Q.topLeftCorner<4, 4>() * turn.A + rms_ * rms_ * turn.Q;
     }
@@ -75,10 +122,10 @@ class Profiler {
           u * u * u / 3, u * u / 2, u * u * u / 6, u * u / 2, u;
       Q.bottomRightCorner<3, 3>() = density * shape;
     }
-    if (size_ == kMost && to.turn < 1) {
-      A.row(kShape + 1) *= to.turn;
-      A.row(kShape + 2) *= to.turn * to.turn;
-      const double lost = 1 - to.turn * to.turn;
+    if (size_ == kMost && to.direction_cosine < 1) {
+      A.row(kShape + 1) *= to.direction_cosine;
+      A.row(kShape + 2) *= to.direction_cosine * to.direction_cosine;
+      const double lost = 1 - to.direction_cosine * to.direction_cosine;
       Q(kShape + 1, kShape + 1) += lost / (wave_ * wave_);
       Q(kShape + 2, kShape + 2) += lost * std::pow(kShapeCurvature / (wave_ * wave_), 2);
     }
@@ -87,10 +134,11 @@ class Profiler {
     P = 0.5 * (next + next.transpose());
   }
 
-  // Acceleration of a point that moves over the heights: h'' v^2 + h' v'.
+  // Returns the row of the acceleration of a point that moves over the heights: h'' v^2 + h' v'.
   Vector accelerationRow(const TracedSample& sample) const {
     Vector h = Vector::Zero(size_);
-    const double bend = std::pow(wave_ * sample.speed, 2), slope = wave_ * sample.speeding;
+    const double bend = std::pow(wave_ * sample.speed, 2),
+                 slope = wave_ * sample.tangential_acceleration;
     h[kRough + 1] = slope;
     h[kRough + 2] = bend;
     h[kBias] = 1;
@@ -113,7 +161,7 @@ class Profiler {
   int size_;
 };
 
-// Joseph form, as ever.
+// Measurement update in Joseph form.
 Row use(Vector& x, Square& P, const Vector& h, double measured, double variance) {
   Row row;
   row.h = h;
@@ -130,21 +178,20 @@ Row use(Vector& x, Square& P, const Vector& h, double measured, double variance)
 
 bool hasHeights(const std::vector<TracedSample>& samples) {
   return std::any_of(samples.begin(), samples.end(),
-                     [](const TracedSample& s) { return s.height && !s.stands; });
+                     [](const TracedSample& s) { return s.height && !s.is_stationary; });
 }
 
-// Samples that count as one where roughness is looked for: a few, and no farther apart than a tip
-// can tell.
+// For the fit of the roughness, samples are averaged within the tip's resolution.
 constexpr std::size_t kMean = 3;
-constexpr double kTold = 0.2e-3; // [m]
+constexpr double kTold = 0.2e-3; // resolution of the tip [m]
 
 struct Mean {
-  TracedSample sample; // in their middle
+  TracedSample sample; // sample at the center
   double count;
 };
 
-// Twice the negative logarithm of the likelihood.
-double surprise(const std::vector<std::vector<Mean>>& stretches, Roughness roughness, bool shaped,
+// Returns -2 log likelihood.
+double deviance(const std::vector<std::vector<Mean>>& stretches, Roughness roughness, bool shaped,
                 const HeightOptions& options) {
   const Profiler profiler(roughness, options, shaped);
   Vector x;
@@ -166,20 +213,21 @@ double surprise(const std::vector<std::vector<Mean>>& stretches, Roughness rough
 std::vector<Mean> meansOf(const std::vector<TracedSample>& samples) {
   std::vector<Mean> means;
   for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    if (samples[begin].stands) {
+    if (samples[begin].is_stationary) {
       ++end;
       continue;
     }
-    while (end < samples.size() && end < begin + kMean && !samples[end].stands &&
-           samples[end].along - samples[begin].along < kTold)
+    while (end < samples.size() && end < begin + kMean && !samples[end].is_stationary &&
+           samples[end].arc_length - samples[begin].arc_length < kTold)
       ++end;
     const double count = static_cast<double>(end - begin);
     Mean mean{samples[begin + (end - begin) / 2], count};
     mean.sample.acceleration = 0;
-    mean.sample.turn = 1;
+    mean.sample.direction_cosine = 1;
     for (std::size_t i = begin; i < end; ++i) {
-      mean.sample.acceleration += (samples[i].acceleration + samples[i].giving) / count;
-      mean.sample.turn *= samples[i].turn;
+      mean.sample.acceleration +=
+          (samples[i].acceleration + samples[i].indentation_acceleration) / count;
+      mean.sample.direction_cosine *= samples[i].direction_cosine;
     }
     means.push_back(mean);
   }
@@ -188,9 +236,9 @@ std::vector<Mean> meansOf(const std::vector<TracedSample>& samples) {
 
 } // namespace
 
-Roughness likeliestRoughness(const std::vector<std::vector<TracedSample>>& stretches,
-                             const HeightOptions& options) {
-  constexpr std::size_t kEnough = 1000; // means, from the longest stretches
+Roughness fitRoughness(const std::vector<std::vector<TracedSample>>& stretches,
+                       const HeightOptions& options) {
+  constexpr std::size_t kEnough = 1000; // number of means, from the longest intervals
   std::vector<std::vector<Mean>> means;
   for (const std::vector<TracedSample>& stretch : stretches) means.push_back(meansOf(stretch));
   std::sort(means.begin(), means.end(),
@@ -202,14 +250,14 @@ Roughness likeliestRoughness(const std::vector<std::vector<TracedSample>>& stret
     count += means[kept].size();
   }
   means.resize(kept);
-  // Over logarithms of length and curvature, which the data hold apart, where rms and length would
-  // lie on one narrow ridge: a wide grid, then a search that halves its step when it stays.
+  // Searches the logarithms of curvature and length, which are nearly uncorrelated; rms and length
+  // would form a narrow ridge. A wide grid is followed by a pattern search.
   double best_bend = 0, best_length = 0, least = INFINITY;
   const auto roughnessOf = [](double bend, double length) -> Roughness {
     return {std::exp(bend + 2 * length) / 7, std::exp(length)};
   };
   const auto look = [&](double bend, double length) {
-    const double value = surprise(means, roughnessOf(bend, length), shaped, options);
+    const double value = deviance(means, roughnessOf(bend, length), shaped, options);
     if (!(value < least)) return false;
     least = value;
     best_bend = bend;
@@ -229,11 +277,12 @@ Roughness likeliestRoughness(const std::vector<std::vector<TracedSample>>& stret
   return roughnessOf(best_bend, best_length);
 }
 
-HeightProfile heightAlong(const std::vector<TracedSample>& samples, const HeightOptions& options) {
+HeightProfile estimateProfile(const std::vector<TracedSample>& samples,
+                              const HeightOptions& options) {
   HeightProfile profile;
   if (samples.empty()) return profile;
   Roughness roughness{options.rms.value_or(0), options.length.value_or(0)};
-  if (!options.rms || !options.length) roughness = likeliestRoughness({samples}, options);
+  if (!options.rms || !options.length) roughness = fitRoughness({samples}, options);
   profile.rms = roughness.rms;
   profile.length = roughness.length;
   const Profiler profiler(roughness, options, hasHeights(samples));
@@ -246,24 +295,24 @@ HeightProfile heightAlong(const std::vector<TracedSample>& samples, const Height
     const TracedSample& sample = samples[i];
     ProfileStep& step = steps[i];
     if (i > 0) profiler.advance(x, P, samples[i - 1], sample, step.A);
-    if (!sample.stands)
+    if (!sample.is_stationary)
       step.rows[step.count++] =
-          use(x, P, profiler.accelerationRow(sample), sample.acceleration + sample.giving,
-              options.acceleration_variance);
-    if (sample.height && !sample.stands)
-      step.rows[step.count++] = use(x, P, height, *sample.height + sample.yielding,
+          use(x, P, profiler.accelerationRow(sample),
+              sample.acceleration + sample.indentation_acceleration, options.acceleration_variance);
+    if (sample.height && !sample.is_stationary)
+      step.rows[step.count++] = use(x, P, height, *sample.height + sample.indentation,
                                     sample.height_sigma * sample.height_sigma);
     step.x = x;
     step.P = P;
   }
-  // Back without an inverse, which standing still would make singular (Bierman 1973).
+  // Modified Bryson-Frazier smoother (Bierman 1973): a stationary tip's covariance is singular.
   Vector l = Vector::Zero(x.size());
   Square L = Square::Zero(x.size(), x.size());
   profile.points.resize(samples.size());
   for (std::size_t i = samples.size(); i-- > 0;) {
     const ProfileStep& step = steps[i];
     const Vector Ph = step.P * height;
-    profile.points[i] = {samples[i].along, height.dot(step.x) - Ph.dot(l),
+    profile.points[i] = {samples[i].arc_length, height.dot(step.x) - Ph.dot(l),
                          std::sqrt(std::max(height.dot(Ph) - Ph.dot(L * Ph), 0.)),
                          samples[i].speed};
     for (int k = step.count; k-- > 0;) {
@@ -278,34 +327,6 @@ HeightProfile heightAlong(const std::vector<TracedSample>& samples, const Height
     }
   }
   return profile;
-}
-
-std::vector<ProfilePoint> resampled(const std::vector<ProfilePoint>& points, double step) {
-  std::vector<ProfilePoint> places;
-  double weights = 0, heights = 0;
-  long place = 0;
-  std::size_t count = 0;
-  double variances = 0;
-  const auto close = [&] {
-    if (count == 0) return;
-    // Neighbours err alike: their mean is no better than they are.
-    places.push_back({static_cast<double>(place) * step, heights / weights,
-                      std::sqrt(variances / static_cast<double>(count))});
-    weights = heights = variances = 0;
-    count = 0;
-  };
-  for (const ProfilePoint& point : points) {
-    const long here = std::lround(point.along / step);
-    if (here != place) close();
-    place = here;
-    const double weight = 1 / std::max(point.sigma * point.sigma, 1e-18);
-    weights += weight;
-    heights += weight * point.height;
-    variances += point.sigma * point.sigma;
-    ++count;
-  }
-  close();
-  return places;
 }
 
 } // namespace patina

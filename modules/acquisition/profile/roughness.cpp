@@ -5,24 +5,25 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kPlacesAcross = 25; // places a cutoff
-constexpr std::size_t kFewestLengths = 4;
-constexpr double kMostPlaces = 1e7;
+constexpr std::size_t kPlacesAcross = 25; // samples per cutoff
+constexpr std::size_t kMinLengths = 4;
+constexpr double kMaxPlaces = 1e7;
 
-// Evenly, what lies between two points on the line between them.
+// Interpolates the heights linearly at even steps.
 std::vector<double> evenPlaces(const std::vector<ProfilePoint>& points, double step) {
   std::vector<double> heights;
   std::size_t next = 1;
-  if (!(points.back().along - points.front().along < kMostPlaces * step)) return {};
-  for (double at = points.front().along; at <= points.back().along; at += step) {
-    while (next + 1 < points.size() && points[next].along < at) ++next;
+  if (!(points.back().arc_length - points.front().arc_length < kMaxPlaces * step)) return {};
+  for (double at = points.front().arc_length; at <= points.back().arc_length; at += step) {
+    while (next + 1 < points.size() && points[next].arc_length < at) ++next;
     const ProfilePoint &a = points[next - 1], &b = points[next];
-    heights.push_back(a.height + (b.height - a.height) * (at - a.along) / (b.along - a.along));
+    heights.push_back(a.height +
+                      (b.height - a.height) * (at - a.arc_length) / (b.arc_length - a.arc_length));
   }
   return heights;
 }
 
-// Without the first and last half of a cutoff.
+// High-pass filter; removes half a cutoff at each end.
 std::vector<double> withoutLongWaves(const std::vector<double>& heights) {
   const double alpha = std::sqrt(std::log(2.) / M_PI);
   constexpr std::size_t kHalf = kPlacesAcross / 2;
@@ -46,7 +47,7 @@ struct Averaged {
   double sum = 0, squares = 0, count = 0;
   void add(double value) { sum += value, squares += value * value, count += 1; }
   double value() const { return sum / count; }
-  double deviation() const { // of the mean
+  double deviation() const { // standard deviation of the mean
     return std::sqrt(std::max(squares / count - value() * value(), 0.) / (count - 1));
   }
 };
@@ -57,9 +58,9 @@ std::optional<RoughnessEstimate> roughnessOf(const std::vector<ScanHeight>& heig
                                              double cutoff) {
   Averaged squares, sizes;
   for (std::size_t begin = 0, end = 0; begin < heights.size(); begin = end) {
-    std::vector<ProfilePoint> points; // where it goes on: standing adds no way
+    std::vector<ProfilePoint> points; // points of increasing arc length; a stationary tip adds none
     for (; end < heights.size() && heights[end].stretch == heights[begin].stretch; ++end)
-      if (points.empty() || heights[end].point.along > points.back().along)
+      if (points.empty() || heights[end].point.arc_length > points.back().arc_length)
         points.push_back(heights[end].point);
     if (points.size() < 2) continue;
     const std::vector<double> left = withoutLongWaves(evenPlaces(points, cutoff / kPlacesAcross));
@@ -73,7 +74,7 @@ std::optional<RoughnessEstimate> roughnessOf(const std::vector<ScanHeight>& heig
       sizes.add(size);
     }
   }
-  if (squares.count < kFewestLengths) return std::nullopt;
+  if (squares.count < kMinLengths) return std::nullopt;
   RoughnessEstimate found;
   found.rq = std::sqrt(squares.value());
   found.rq_deviation = found.rq > 0 ? squares.deviation() / (2 * found.rq) : 0;

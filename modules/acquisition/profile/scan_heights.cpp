@@ -8,21 +8,22 @@
 namespace patina {
 namespace {
 
-constexpr double kFlat = 0.5;        // of the way across: beyond it is no plane
-constexpr std::size_t kFewest = 100; // samples of a stretch that tells a height: 0.2 s
+constexpr double kFlat = 0.5;        // largest ratio of thickness to width of a plane
+constexpr std::size_t kFewest = 100; // smallest number of samples of a usable interval: 0.2 s
 
 } // namespace
 
-std::vector<PressSample> pressesOf(const std::vector<PathSample>& path,
-                                   const std::function<Vec3(std::size_t)>& velocityAt,
-                                   const std::function<TipOver(const PathSample&)>& over) {
+std::vector<PressSample>
+pressSamples(const std::vector<PathSample>& path,
+             const std::function<Vec3(std::size_t)>& velocityAt,
+             const std::function<SurfaceUnderTip(const PathSample&)>& over) {
   std::vector<PressSample> samples;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const PathSample& sample = path[i];
     if (!sample.touching) continue;
-    const TipOver here = over(sample);
+    const SurfaceUnderTip here = over(sample);
     const Vec3 velocity = velocityAt(i);
-    if ((velocity - here.normal * here.normal.dot(velocity)).norm() > kStandingSpeed) continue;
+    if ((velocity - here.normal * here.normal.dot(velocity)).norm() > kStationarySpeed) continue;
     samples.push_back({sample.t, -here.height, sample.force, sample.sigma});
   }
   return samples;
@@ -45,8 +46,8 @@ Plane touchedPlane(const std::vector<PathSample>& path, const Vec3& tip) {
       spread += (sample.position - mean) * (sample.position - mean).transpose() / count;
   const SymmetricEigen axes(spread);
   if (!(axes.values[0] < kFlat * kFlat * axes.values[1]))
-    throw Error("where the tip touched is no plane: tell which way is out (--normal), or find "
-                "heights over its mesh (--over)");
+    throw Error("the contact points form no plane: give the outward direction (--normal), or find "
+                "heights over the mesh (--reference-mesh)");
   const Vec3 normal = axes.vectors.col(0);
   return {normal.dot(shaft) < 0 ? Vec3(-normal) : normal, mean};
 }
@@ -64,26 +65,27 @@ ScanHeights scanHeights(const FilteredScan& scan, const std::vector<CameraPose>&
     found.plane = touchedPlane(scan.whole, probe.tip);
   }
   found.compliance = estimateCompliance(
-      pressesOf(
+      pressSamples(
           scan.whole, [&](std::size_t i) { return motionAt(scan.track, scan.whole[i].t).velocity; },
           [&normal = found.plane.normal](const PathSample& sample) {
-            return TipOver{normal, normal.dot(sample.position)};
+            return SurfaceUnderTip{normal, normal.dot(sample.position)};
           }),
       std::sqrt(probe.forceVariance()), true);
-  const bool told = found.compliance && found.compliance->isTold();
-  const double compliance = given.value_or(told ? found.compliance->compliance : 0);
+  const bool significant = found.compliance && found.compliance->isSignificant();
+  const double compliance = given.value_or(significant ? found.compliance->compliance : 0);
   std::vector<std::vector<TracedSample>> traces;
-  for (const Stretch& stretch : touchingStretches(scan.whole))
+  for (const ContactInterval& stretch : contactIntervals(scan.whole))
     if (stretch.end - stretch.begin >= kFewest)
-      traces.push_back(traced(scan, stretch, poses, probe, gravity, found.plane, compliance));
+      traces.push_back(
+          profileSamples(scan, stretch, poses, probe, gravity, found.plane, compliance));
   if (traces.empty()) throw Error("the probe touches too shortly for a height");
   HeightOptions options;
   options.acceleration_variance = probe.accelerationVariance();
-  const Roughness roughness = likeliestRoughness(traces, options);
+  const Roughness roughness = fitRoughness(traces, options);
   options.rms = roughness.rms;
   options.length = roughness.length;
   for (std::size_t s = 0; s < traces.size(); ++s) {
-    const HeightProfile profile = heightAlong(traces[s], options);
+    const HeightProfile profile = estimateProfile(traces[s], options);
     for (std::size_t i = 0; i < profile.points.size(); ++i)
       found.heights.push_back({traces[s][i].t, profile.points[i], s});
   }

@@ -11,11 +11,11 @@
 namespace patina {
 namespace {
 
-constexpr double kForceReach = 0.06; // force is a parabola so far before and after a sample [s]
+constexpr double kForceReach = 0.06; // half width of the local parabola of the force [s]
 
-// Second derivative by time of the force at each sample of a stretch [N/s^2].
+// Returns the second time derivative of the force at each sample of an interval [N/s^2].
 std::vector<double> forceAccelerations(const std::vector<PathSample>& path,
-                                       const Stretch& stretch) {
+                                       const ContactInterval& stretch) {
   std::vector<double> found;
   std::size_t begin = stretch.begin, end = stretch.begin;
   for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
@@ -36,7 +36,7 @@ std::vector<double> forceAccelerations(const std::vector<PathSample>& path,
   return found;
 }
 
-// The tip's acceleration [m/s^2] from what the axes show, where they span space.
+// Tip acceleration [m/s^2] from the accelerometers, whose axes must span space.
 class TipAcceleration {
  public:
   TipAcceleration(const ProbeModel& probe, const std::array<double, 4>& bias)
@@ -46,7 +46,7 @@ class TipAcceleration {
       normal += axis.direction * axis.direction.transpose();
     bool spans = false;
     normal.computeInverseWithCheck(inverse_, spans, 1e-6);
-    if (!spans) throw Error("the accelerometers' axes lie in one plane: they tell no height");
+    if (!spans) throw Error("the accelerometers' axes lie in one plane and measure no height");
   }
 
   Vec3 operator()(const ProbeSample& sample, const TipMotion& motion,
@@ -70,15 +70,16 @@ class TipAcceleration {
 
 } // namespace
 
-std::vector<TracedSample> traced(const FilteredScan& scan, const Stretch& stretch,
-                                 const std::vector<CameraPose>& poses, const ProbeModel& probe,
-                                 const Vec3& gravity, const Plane& plane, double compliance) {
+std::vector<TracedSample> profileSamples(const FilteredScan& scan, const ContactInterval& stretch,
+                                         const std::vector<CameraPose>& poses,
+                                         const ProbeModel& probe, const Vec3& gravity,
+                                         const Plane& plane, double compliance) {
   const Vec3& normal = plane.normal;
   const TipAcceleration accelerationOf(probe, scan.bias);
   std::vector<TracedSample> trace;
   trace.reserve(stretch.end - stretch.begin);
   double along = 0;
-  Vec3 direction = Vec3::Zero(); // where it last moved
+  Vec3 direction = Vec3::Zero(); // direction of the last movement
   bool stood = false;
   const std::vector<double> force_change = forceAccelerations(scan.whole, stretch);
   std::size_t next = 0;
@@ -96,22 +97,23 @@ std::vector<TracedSample> traced(const FilteredScan& scan, const Stretch& stretc
     TracedSample sample;
     sample.t = point.t;
     sample.speed = velocity.norm();
-    sample.stands = sample.speed < kStandingSpeed;
-    if (!trace.empty() && !sample.stands)
+    sample.is_stationary = sample.speed < kStationarySpeed;
+    if (!trace.empty() && !sample.is_stationary)
       along += 0.5 * (sample.speed + trace.back().speed) * (sample.t - trace.back().t);
-    sample.along = along;
+    sample.arc_length = along;
     const Vec3 heading = velocity / std::max(sample.speed, 1e-12);
-    sample.speeding = heading.dot(motion.acceleration);
-    if (!sample.stands) {
-      if (stood && direction.squaredNorm() > 0) sample.turn = std::min(direction.dot(heading), 1.);
+    sample.tangential_acceleration = heading.dot(motion.acceleration);
+    if (!sample.is_stationary) {
+      if (stood && direction.squaredNorm() > 0)
+        sample.direction_cosine = std::min(direction.dot(heading), 1.);
       direction = heading;
       stood = false;
     } else {
       stood = true;
     }
     sample.acceleration = normal.dot(accelerationOf(*reading, motion, point.orientation, gravity));
-    sample.yielding = compliance * point.force;
-    sample.giving = compliance * force_change[i - stretch.begin];
+    sample.indentation = compliance * point.force;
+    sample.indentation_acceleration = compliance * force_change[i - stretch.begin];
     if (next < poses.size() && poses[next].t <= point.t) {
       const CameraPose& pose = poses[next];
       const Vec3 lever = point.orientation * probe.tip;

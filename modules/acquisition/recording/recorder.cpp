@@ -3,21 +3,74 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
-#include "acquisition/orientation.h"
-#include "acquisition/recording/arrival_clock.h"
-#include "acquisition/recording/row_file.h"
+#include "acquisition/recording/min_delay_clock.h"
+#include "acquisition/values/orientation.h"
 #include "core/append_file.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
 
 namespace patina {
+
+// A table of a scan folder that grows by complete rows while it is recorded. One thread, or several
+// under one lock, may add rows while another one writes earlier rows.
+class RowFile {
+ public:
+  static constexpr std::size_t kLongestRow = 512; // [bytes]
+
+  // Creates the file. Throws FileError.
+  RowFile(const std::filesystem::path& path, const std::string& header);
+  // Appends a row with its line's end. A row longer than kLongestRow is cut.
+  void add(std::string row);
+
+  std::string takePending() {
+    std::string pending;
+    pending.swap(pending_);
+    return pending;
+  }
+  void write(const std::string& pending); // returns when the data are on disk; throws FileError
+
+ private:
+  std::optional<AppendFile> file_;
+  std::size_t size_ = 0; // size including pending rows
+  std::string pending_;
+};
+
+namespace {
+
+constexpr std::size_t kPage = 4096;
+
+} // namespace
+
+RowFile::RowFile(const std::filesystem::path& path, const std::string& header)
+    : size_(header.size()) {
+  createFile(path, header);
+  file_.emplace(path);
+}
+
+void RowFile::add(std::string row) {
+  if (row.size() > kLongestRow) row.replace(kLongestRow - 1, std::string::npos, 1, '\n');
+  // A program killed while it writes stops at a page boundary. Rows are padded with blanks before
+  // the line's end so that none crosses it and none is left incomplete.
+  const std::size_t left = kPage - (size_ + row.size()) % kPage;
+  if (left < kLongestRow) row.insert(row.size() - 1, left, ' ');
+  size_ += row.size();
+  pending_ += row;
+}
+
+void RowFile::write(const std::string& pending) {
+  if (!pending.empty()) file_->append(pending);
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,10 +92,11 @@ void requireNoScan(const fs::path& folder) {
       throw FileError(folder.string(), 0, "holds a scan already: name another folder");
 }
 
-// Beside the frames; what is there already may be the same, as where a scan was prepared.
+// Writes a file next to the frames. An equal file may exist, as in a prepared folder.
 void writeBeside(const fs::path& path, const std::string& text) {
-  if (!pathExists(path)) return writeFileAtomically(path, text);
-  if (readFile(path) != text)
+  if (!pathExists(path))
+    writeFileAtomically(path, text);
+  else if (readFile(path) != text)
     throw FileError(path.string(), 0, "is another than the recording's: name another folder");
 }
 
@@ -53,20 +107,24 @@ class Recorder::Work {
   Work(std::unique_ptr<FrameSource> frames, std::unique_ptr<ProbeSource> probe,
        const RecordingSetup& setup)
       : frames_(std::move(frames)), probe_(std::move(probe)), folder_(setup.folder),
-        camera_(readCamera(setup.camera)), tracker_(camera_, readMarkers(setup.rig), setup.finder),
         begin_(SteadyClock::now()) {
+    if (!setup.camera.empty()) camera_ = readCamera(setup.camera);
+    std::vector<RigMarker> markers;
+    if (!setup.rig.empty()) markers = readMarkers(setup.rig);
+    if (camera_ && !markers.empty()) tracker_.emplace(*camera_, markers, setup.finder);
     if (probe_ && probe_->isLive() != frames_->isLive())
       throw Error("frames and probe share no clock: both must be live, or both recorded");
     requireNoScan(folder_);
-    const std::string camera_text = readFile(setup.camera), rig_text = readFile(setup.rig);
+    const auto textOf = [](const fs::path& file) { return file.empty() ? "" : readFile(file); };
+    const std::string camera_text = textOf(setup.camera), rig_text = textOf(setup.rig);
     fresh_.emplace(folder_, "frames/000000.pgm");
     makeFolder(folder_);
-    writeBeside(folder_ / "camera.yml", camera_text);
-    writeBeside(folder_ / "rig.json", rig_text);
+    if (!camera_text.empty()) writeBeside(folder_ / "camera.yml", camera_text);
+    if (!rig_text.empty()) writeBeside(folder_ / "rig.json", rig_text);
     makeFolder(folder_ / "frames");
-    frame_rows_.emplace(folder_ / "frames.csv", frameListHeader());
-    pose_rows_.emplace(folder_ / "poses.tum", posesHeader());
-    if (probe_) probe_rows_.emplace(folder_ / "probe.csv", probeHeader());
+    frame_rows_ = std::make_unique<RowFile>(folder_ / "frames.csv", frameListHeader());
+    if (tracker_) pose_rows_ = std::make_unique<RowFile>(folder_ / "poses.tum", posesHeader());
+    state_.tracks = tracker_.has_value();
     state_.paused = setup.paused;
     probe_done_ = !probe_;
     const auto start = [&](void (Work::*work)()) {
@@ -95,10 +153,10 @@ class Recorder::Work {
     threads_.clear();
   }
 
-  RecordingNews poll() {
+  RecordingUpdate poll() {
     const std::lock_guard lock(mutex_);
     if (state_.running) state_.seconds = now();
-    RecordingNews news = std::move(news_);
+    RecordingUpdate news = std::move(news_);
     news_ = {};
     news_.frame = news.frame;
     news.state = state_;
@@ -107,7 +165,7 @@ class Recorder::Work {
 
  private:
   struct Arrived {
-    SourceFrame frame; // at the recording's time
+    SourceFrame frame; // in the recording's time
     bool written;
   };
 
@@ -165,7 +223,7 @@ class Recorder::Work {
         continue;
       }
       if (!frames_->isLive()) changed_.wait(lock, [&] { return stopping_ || !waiting_; });
-      if (waiting_) {
+      if (waiting_ && tracker_) {
         ++state_.skipped;
         leaveOut({waiting_->frame.t, "skipped, as the one before it was still looked at"},
                  waiting_->written);
@@ -174,20 +232,22 @@ class Recorder::Work {
       changed_.notify_all();
     }
     std::vector<std::string> notes = frames_->notes();
-    const bool along = taken_ && shown_.width != camera_.width;
-    if (const std::string line = turns_.line(along ? &camera_ : nullptr, kTurnedUnlike);
+    const bool along = taken_ && camera_ && shown_.width != camera_->width;
+    if (const std::string line = turns_.line(along ? &*camera_ : nullptr, kTurnedUnlike);
         !line.empty())
       notes.push_back(line);
     const std::lock_guard lock(mutex_);
     state_.notes = std::move(notes);
   }
 
-  // The camera turns along with the first frame; one camera is that of all.
+  // The camera is turned with the first frame and stays the same for all.
   void takeCamera(const SourceFrame& frame) {
     if (!std::exchange(taken_, true)) {
-      shown_ = cameraOf(frame.image, camera_, frame.name);
-      tracker_.setCamera(shown_); // before it has a frame
-      if (shown_.width != camera_.width)
+      shown_.width = frame.image.width;
+      shown_.height = frame.image.height;
+      if (camera_) shown_ = cameraOf(frame.image, *camera_, frame.name);
+      if (tracker_) tracker_->setCamera(shown_); // before its first frame
+      if (camera_ && shown_.width != camera_->width)
         writeFileAtomically(folder_ / "camera.yml", cameraText(shown_));
     }
     requireSize(frame.image, shown_, frame.name);
@@ -199,9 +259,9 @@ class Recorder::Work {
     return state_.paused;
   }
 
-  // Under the lock.
-  void leaveOut(const NoPose& without, bool written) {
-    if (written) pose_rows_->add(poseRow(without));
+  // The caller holds the lock.
+  void leaveOut(const MissingPose& without, bool written) {
+    if (written && pose_rows_) pose_rows_->add(poseRow(without));
     news_.without.push_back(without);
   }
 
@@ -216,13 +276,17 @@ class Recorder::Work {
       lock.unlock();
       auto seen = std::make_shared<RecordedFrame>();
       seen->t = arrived.frame.t;
-      const SeenRig rig = tracker_.track(arrived.frame.image, seen->t);
+      if (tracker_) {
+        const SeenRig rig = tracker_->track(arrived.frame.image, seen->t);
+        seen->markers = tracker_->markers();
+        seen->verdict = rig.verdict;
+        if (rig.verdict != RigVerdict::seen) seen->why = reasonOf(rig);
+        if (rig.verdict == RigVerdict::seen) seen->pose = cameraPose(rig, seen->t);
+      } else {
+        seen->why = "not looked at, without a camera.yml and a rig.json";
+      }
       seen->name = std::move(arrived.frame.name);
       seen->image = std::move(arrived.frame.image);
-      seen->markers = tracker_.markers();
-      seen->verdict = rig.verdict;
-      if (rig.verdict != RigVerdict::seen) seen->why = reasonOf(rig);
-      if (rig.verdict == RigVerdict::seen) seen->pose = cameraPose(rig, seen->t);
       lock.lock();
       if (seen->pose) {
         if (arrived.written) {
@@ -239,32 +303,45 @@ class Recorder::Work {
 
   void readProbe() {
     std::vector<ProbeSample> batch;
+    std::vector<RateSample> rates; // one for each sample, or none
     std::optional<double> last;
-    std::exception_ptr failure; // after samples that came before it
+    std::exception_ptr failure; // thrown after the samples that came before it
     while (!failure) {
       try {
-        if (!probe_->read(batch)) break;
+        if (!probe_->read(batch, &rates)) break;
       } catch (...) {
         failure = std::current_exception();
       }
       const double arrival = now();
+      if (!batch.empty()) createProbeRows(!rates.empty());
       const std::lock_guard lock(mutex_);
-      for (ProbeSample& sample : batch) {
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        ProbeSample& sample = batch[i];
         if (probe_->isLive()) sample.t = probe_clock_.timeOf(sample.t, arrival);
         state_.dropouts += last && sample.t - *last > kDropout;
         last = sample.t;
         if (!state_.paused) {
           if (state_.samples == 0) fresh_->keep();
-          probe_rows_->add(probeRow(sample));
+          probe_rows_->add(probeRow(sample, rates.empty() ? nullptr : &rates[i]));
           ++state_.samples;
         }
         news_.samples.push_back(sample);
       }
       batch.clear();
+      rates.clear();
       state_.probe = probe_->health();
       if (state_.left_out.empty()) state_.left_out = probe_->leftOut();
     }
+    createProbeRows(false);
     if (failure) std::rethrow_exception(failure);
+  }
+
+  // Creates probe.csv once. The first samples show whether there is a gyroscope.
+  void createProbeRows(bool gyroscope) {
+    if (probe_rows_) return; // only this thread creates it
+    auto rows = std::make_unique<RowFile>(folder_ / "probe.csv", probeHeader(gyroscope));
+    const std::lock_guard lock(mutex_);
+    probe_rows_ = std::move(rows);
   }
 
   void keepWriting() {
@@ -274,11 +351,11 @@ class Recorder::Work {
         changed_.wait_for(lock, kFlush, [&] { return hasEnded(); });
         ended = hasEnded();
       }
-      // Nothing of a camera that has ended tells what the probe feels.
+      // Once the camera has ended, further samples of the probe cannot be used.
       if (framesEnded() && probe_ && probe_->isLive()) probe_->stop();
-      flush(*frame_rows_);
-      if (probe_) flush(*probe_rows_);
-      flush(*pose_rows_);
+      flush(frame_rows_);
+      flush(probe_rows_);
+      flush(pose_rows_);
       const std::lock_guard lock(mutex_);
       if (ended) {
         state_.seconds = now();
@@ -287,21 +364,22 @@ class Recorder::Work {
     }
   }
 
-  // Under the lock.
+  // The caller holds the lock.
   bool hasEnded() const { return tracking_done_ && frames_done_ && probe_done_; }
   bool framesEnded() {
     const std::lock_guard lock(mutex_);
     return frames_done_;
   }
 
-  void flush(RowFile& rows) {
+  void flush(const std::unique_ptr<RowFile>& rows) {
     std::string pending;
     {
       const std::lock_guard lock(mutex_);
-      pending = rows.takePending();
+      if (!rows) return;
+      pending = rows->takePending();
     }
     try {
-      rows.write(pending);
+      rows->write(pending);
     } catch (const FileError& error) {
       fail(error.what());
     }
@@ -310,22 +388,22 @@ class Recorder::Work {
   const std::unique_ptr<FrameSource> frames_;
   const std::unique_ptr<ProbeSource> probe_;
   const fs::path folder_;
-  const Camera camera_; // as its file has it
-  RigTracker tracker_;  // the tracking thread's
-  // The frames' thread's.
-  bool taken_ = false; // what follows
-  Camera shown_;       // as the frames are shown
+  std::optional<Camera> camera_;      // camera of the file
+  std::optional<RigTracker> tracker_; // used by the tracking thread; absent without camera or rig
+  // Used by the frame thread.
+  bool taken_ = false; // true once the members below are set
+  Camera shown_;       // camera of the shown frames
   TurnedFrames turns_;
   const SteadyClock::time_point begin_;
-  ArrivalClock frame_clock_, probe_clock_; // each its thread's
+  MinDelayClock frame_clock_, probe_clock_; // each used by its own thread
 
-  std::mutex mutex_; // for all below
+  std::mutex mutex_; // guards all members below
   std::condition_variable changed_;
-  std::optional<NewFolder> fresh_; // one that failed before anything came is taken back
-  std::optional<RowFile> frame_rows_, pose_rows_, probe_rows_;
+  std::optional<NewFolder> fresh_; // removed if recording fails before any data
+  std::unique_ptr<RowFile> frame_rows_, pose_rows_, probe_rows_;
   std::optional<Arrived> waiting_;
   RecordingState state_;
-  RecordingNews news_;
+  RecordingUpdate news_;
   bool stopping_ = false, frames_done_ = false, tracking_done_ = false, probe_done_ = false;
 
   std::mutex joining_;
@@ -350,7 +428,7 @@ void Recorder::stop() {
   work_->stop();
 }
 
-RecordingNews Recorder::poll() {
+RecordingUpdate Recorder::poll() {
   return work_->poll();
 }
 

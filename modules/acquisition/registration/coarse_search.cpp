@@ -12,11 +12,10 @@ namespace patina {
 namespace {
 
 constexpr int kCells = 48;                   // along the grid's longest side
-constexpr std::size_t kFew = 24, kMore = 96; // points looked at
-constexpr double kSame = 0.05; // poses that take the path's points as near as this, of its
-                               // radius, are one
+constexpr std::size_t kFew = 24, kMore = 96; // points used at first and at last
+constexpr double kSame = 0.05;               // radii of the path; nearer poses are the same
 
-// Distances less the offset at the nodes, in front of the surface positive; linear in between.
+// Signed distances minus the offset at grid nodes, positive in front, with linear interpolation.
 class DistanceGrid {
  public:
   DistanceGrid(const SurfaceTarget& target, double margin) {
@@ -43,7 +42,7 @@ class DistanceGrid {
             const Eigen::Array3i at(i % kBlock, i / kBlock % kBlock, i / (kBlock * kBlock));
             const std::size_t f = index(face[static_cast<std::size_t>(i)]);
             const Vec3 p = corner + spacing_ * at.matrix().cast<double>();
-            // Near enough: at a distance of several cells a wrong side changes little.
+            // A wrong sign matters little several cells from the surface.
             const bool behind = (p - mesh.corner(f, 0)).dot(faceNormal(mesh, f)) < 0;
             const double d = spacing_ * static_cast<double>(distance[static_cast<std::size_t>(i)]);
             value_[node(at[0] + x, at[1] + y, at[2] + z)] =
@@ -53,9 +52,9 @@ class DistanceGrid {
   }
 
   double spacing() const { return spacing_; }
-  double extent() const { return extent_; } // of the mesh
+  double extent() const { return extent_; } // diagonal of the mesh
 
-  // Distance and its gradient; beyond the grid as at its rim, and farther.
+  // Returns the distance and its gradient; outside the grid it is extrapolated from the border.
   double at(const Vec3& p, Vec3& gradient) const {
     const Vec3 u = (p - origin_) / spacing_;
     Vec3 inside;
@@ -106,33 +105,33 @@ struct Tried {
   double cost = std::numeric_limits<double>::infinity(); // [m^2]
 };
 
-// Some rounds of Gauss-Newton in which what is far off counts less.
+// Robust Gauss-Newton iterations.
 void improve(Tried& tried, const DistanceGrid& grid, const std::vector<Vec3>& points, int rounds) {
   for (int round = 0; round <= rounds; ++round) {
-    const MotionScale scale = scaleOf(points, tried.pose);
+    const PoseScaling scale = scaleOf(points, tried.pose);
     Mat6 normal = Mat6::Zero();
     Vec6 right = Vec6::Zero();
-    std::vector<double> misses;
+    std::vector<double> residuals;
     std::vector<Vec6> gradients;
     for (const Vec3& point : points) {
       const Vec3 p = tried.pose * point;
       Vec3 direction;
-      misses.push_back(grid.at(p, direction));
+      residuals.push_back(grid.at(p, direction));
       gradients.push_back(scale.gradient(p, direction));
     }
     std::vector<double> sizes;
-    for (const double miss : misses) sizes.push_back(std::abs(miss));
+    for (const double residual : residuals) sizes.push_back(std::abs(residual));
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 6 / 10);
     std::nth_element(sizes.begin(), middle, sizes.end());
     const double s = std::max(1.5 * *middle, 0.3 * grid.spacing());
     tried.cost = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double r2 = misses[i] * misses[i];
+      const double r2 = residuals[i] * residuals[i];
       const double far = 2 * grid.spacing();
       tried.cost += r2 / (1 + r2 / (far * far));
       const double q = s * s / (s * s + r2);
       normal.selfadjointView<Eigen::Lower>().rankUpdate(gradients[i], q * q);
-      right -= q * q * misses[i] * gradients[i];
+      right -= q * q * residuals[i] * gradients[i];
     }
     tried.cost /= static_cast<double>(points.size());
     if (round == rounds) return;
@@ -170,7 +169,7 @@ void keepBest(std::vector<Tried>& tried, std::size_t count) {
 std::vector<Pose> coarsePoses(const SurfaceTarget& target, const std::vector<Vec3>& points,
                               const Pose& start, const CoarseSearch& search, Progress& progress) {
   const std::vector<Vec3> few = thinned(points, kFew), more = thinned(points, kMore);
-  const MotionScale scale = scaleOf(points, start);
+  const PoseScaling scale = scaleOf(points, start);
   const DistanceGrid grid(target, 0.25 * bounds(target.mesh()).sizes().maxCoeff());
   std::mt19937 random(search.seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -183,7 +182,7 @@ std::vector<Pose> coarsePoses(const SurfaceTarget& target, const std::vector<Vec
   std::vector<Tried> tried(std::max<std::size_t>(search.starts, 1));
   for (std::size_t i = 0; i < tried.size(); ++i) {
     Vec6 motion;
-    motion << search.turn * scale.radius * inBall(), search.shift * inBall();
+    motion << search.rotation * scale.radius * inBall(), search.translation * inBall();
     tried[i].pose = (i == 0 ? Pose::Identity() : scale.motion(motion)) * start;
     improve(tried[i], grid, few, 3);
     if (i % 100 == 0) progress.throwIfCancelled();

@@ -1,5 +1,4 @@
-// First guesses for a path whose place on a mesh is hardly known: many poses tried at little cost
-// each, on distances from the mesh at the nodes of a coarse grid.
+// Multi-start search for the pose of a path on a mesh, by distances on a coarse grid.
 #pragma once
 
 #include <vector>
@@ -10,14 +9,14 @@
 namespace patina {
 
 struct CoarseSearch {
-  double turn = 1.75;        // about any axis, at most [rad]; pi = any turn
-  double shift = 0.06;       // in any direction, at most [m]
-  std::size_t keep = 6;      // poses that differ, the best first
-  std::size_t starts = 1500; // poses tried at first; those for any turn are more
-  unsigned seed = 1;         // which poses are tried; the same seed, the same poses
+  double rotation = 1.75;    // largest rotation about any axis [rad]; pi: all rotations
+  double translation = 0.06; // largest translation in any direction [m]
+  std::size_t keep = 6;      // number of distinct poses returned, the best first
+  std::size_t starts = 1500; // poses tried at first; more for all rotations
+  unsigned seed = 1;         // seed of the poses tried
 };
 
-// Poses near `start` at which the path lies on the surface, roughly. Throws Cancelled.
+// Returns poses near `start` at which the path is roughly on the surface. Throws Cancelled.
 std::vector<Pose> coarsePoses(const SurfaceTarget& target, const std::vector<Vec3>& points,
                               const Pose& start, const CoarseSearch& search, Progress& progress);
 

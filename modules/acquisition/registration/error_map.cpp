@@ -27,9 +27,9 @@ std::vector<float> errorMapOf(const TriangleMesh& mesh, const Registration& regi
                               double reach) {
   if (!(reach > 0)) throw std::invalid_argument("error map: a reach is above 0");
   std::map<Cell, std::vector<std::size_t>> samples;
-  for (std::size_t i = 0; i < registration.misses.size(); ++i)
-    if (registration.counts[i] && registration.misses[i].foot.face != kNone)
-      samples[cellOf(registration.misses[i].at, reach)].push_back(i);
+  for (std::size_t i = 0; i < registration.residuals.size(); ++i)
+    if (registration.inliers[i] && registration.residuals[i].foot.face != kNone)
+      samples[cellOf(registration.residuals[i].at, reach)].push_back(i);
   std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
     for (const std::int32_t v : mesh.triangles[f])
@@ -44,12 +44,12 @@ std::vector<float> errorMapOf(const TriangleMesh& mesh, const Registration& regi
           samples.find({middle[0] + k % 3 - 1, middle[1] + k / 3 % 3 - 1, middle[2] + k / 9 - 1});
       if (cell == samples.end()) continue;
       for (const std::size_t i : cell->second) {
-        const Miss& miss = registration.misses[i];
-        const double near = 1 - (miss.at - p).squaredNorm() / (reach * reach);
+        const SurfaceResidual& residual = registration.residuals[i];
+        const double near = 1 - (residual.at - p).squaredNorm() / (reach * reach);
         if (near <= 0 ||
-            normals[v].dot(normalOf(mesh, static_cast<std::size_t>(miss.foot.face))) < 0)
+            normals[v].dot(normalOf(mesh, static_cast<std::size_t>(residual.foot.face))) < 0)
           continue;
-        sum += near * near * std::abs(miss.distance);
+        sum += near * near * std::abs(residual.distance);
         weights += near * near;
       }
     }

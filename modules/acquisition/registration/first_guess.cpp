@@ -9,15 +9,15 @@
 namespace patina {
 
 std::vector<PathSample> inContact(std::vector<PathSample> path) {
-  const bool told = std::any_of(path.begin(), path.end(),
-                                [](const PathSample& sample) { return sample.force != 0; });
-  if (!told) return path;
+  const bool contact_known = std::any_of(
+      path.begin(), path.end(), [](const PathSample& sample) { return sample.force != 0; });
+  if (!contact_known) return path;
   markContact(path);
   std::erase_if(path, [](const PathSample& sample) { return !sample.touching; });
   return path;
 }
 
-std::vector<PathSample> leaveOutFar(std::vector<PathSample>& path, double reach) {
+std::vector<PathSample> removeOutliers(std::vector<PathSample>& path, double reach) {
   if (path.empty()) return {};
   Vec3 middle;
   for (int axis = 0; axis < 3; ++axis) {
@@ -34,7 +34,7 @@ std::vector<PathSample> leaveOutFar(std::vector<PathSample>& path, double reach)
   return far;
 }
 
-Pose middleOnMiddle(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
+Pose alignCenters(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
   Pose pose = Pose::Identity();
   pose.translation() = bounds(mesh).center() - scaleOf(points, Pose::Identity()).centre;
   return pose;

@@ -1,20 +1,19 @@
-// What a path is registered from, where nothing more is known of it.
+// Start poses and samples for a registration without prior information.
 #pragma once
 
 #include <vector>
 
-#include "acquisition/scan_samples.h"
+#include "acquisition/values/scan_samples.h"
 #include "geometry/mesh/triangle_mesh.h"
 
 namespace patina {
 
-// The samples in contact, with `touching` set; all, where none tells a force.
+// Returns the samples in contact, with `touching` set; all samples if there is no force.
 std::vector<PathSample> inContact(std::vector<PathSample> path);
-// Leaves out what lies farther than `reach` [m] from the path's middle, the median along each axis:
-// no path in contact is longer than what it touches, and one absurd sample would say how long a
-// turn of all the others is. Those that were left out.
-std::vector<PathSample> leaveOutFar(std::vector<PathSample>& path, double reach);
-// The points' middle onto that of the mesh's box. One point or more.
-Pose middleOnMiddle(const TriangleMesh& mesh, const std::vector<Vec3>& points);
+// Removes and returns the samples farther than `reach` [m] from the componentwise median: no path
+// in contact exceeds its object, and a gross outlier would inflate the path's radius.
+std::vector<PathSample> removeOutliers(std::vector<PathSample>& path, double reach);
+// Returns the pose that moves the points' center to that of the mesh's box. At least one point.
+Pose alignCenters(const TriangleMesh& mesh, const std::vector<Vec3>& points);
 
 } // namespace patina

@@ -1,19 +1,35 @@
-// Registration, the tip's place in the probe and the clocks' offset, refined together (A10): what
-// of a scan's distances a wrong calibration explains is not left to the pose.
+// Joint fit of pose, tip and clock offset, so that calibration errors do not bias the pose (A10).
 #pragma once
 
 #include <optional>
 #include <string>
 
 #include "acquisition/registration/register_path.h"
-#include "acquisition/scan_samples.h"
+#include "acquisition/registration/residual_noise.h"
+#include "acquisition/values/scan_samples.h"
 
 namespace patina {
 
+// Similarity fit: scale of the path for which it fits a mesh best.
+struct SimilarityFit {
+  Pose mesh_from_path = Pose::Identity(); // pose of the path scaled about its points' center
+  double scale = 1;                       // scale of the path
+  double deviation = 0;                   // standard deviation of the scale
+  double rms = 0;                         // inliers [m]
+  bool converged = false;
+};
+
+// Gauss-Newton over pose and scale with the inliers of a given fit. The deviation follows from this
+// fit's own residuals (fitNoiseModel() with the lower limit `noise`), because those of a fit
+// without scale contain the misfit. `indentations`: see FitOptions.
+SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>& points,
+                            const Pose& mesh_from_path, const std::vector<bool>& inliers,
+                            const std::vector<double>& indentations, double noise);
+
 struct JointOptions {
-  bool tip = true, clock = true; // refined beside the pose
-  double compliance = 0;         // how far the surface yields to a newton [m/N]
-  double together = 1;           // so many samples in a row are worth one (ErrorLaw)
+  bool tip = true, clock = true; // parameters estimated besides the pose
+  double compliance = 0;         // compliance of the surface [m/N]
+  double correlation_length = 1; // correlated samples per independent one (ResidualNoiseModel)
 };
 
 constexpr int kJointValues = 10;
@@ -22,37 +38,36 @@ using JointMatrix = Eigen::Matrix<double, kJointValues, kJointValues>;
 
 struct JointFit {
   Pose mesh_from_path = Pose::Identity();
-  Vec3 tip = Vec3::Zero(); // added to the tip, in the probe's frame [m]
-  // What the probe felt at t was at the place of the path's t + clock [s].
-  double clock = 0;
-  // Of a small turn about the path's middle [rad], its shift [m], both in the mesh's frame, tip and
-  // clock; what is frozen adds nothing. Errors that neighbouring samples share count once.
+  Vec3 tip = Vec3::Zero(); // correction of the tip in the probe's frame [m]
+  double clock = 0;        // the force at time t belongs to the position at t + clock [s]
+  // Covariance of a small rotation about the path's center [rad], its translation [m], both in the
+  // mesh's frame, tip and clock; unobservable directions add nothing. Correlated errors of
+  // neighbouring samples are accounted for.
   JointMatrix covariance = JointMatrix::Zero();
-  Vec3 middle = Vec3::Zero(); // [m], in the mesh's frame
-  // One deviation, rms of the tip's axes [m], of the clock [s]; none where not all of it is told.
+  Vec3 middle = Vec3::Zero(); // in the mesh's frame [m]
+  // Deviations of the tip (rms of its axes) [m] and the clock [s]; absent if not observable.
   std::optional<double> tip_deviation, clock_deviation;
-  // In words, each a direction that the distances do not tell: it stays where it was.
-  std::vector<std::string> frozen;
+  // Descriptions of the unobservable directions, which keep their values.
+  std::vector<std::string> unobservable_parameters;
   std::vector<PathSample> path; // with the corrections
-  double rms = 0;               // of what counts [m]
+  double rms = 0;               // inliers [m]
   int iterations = 0;
   bool converged = false;
 };
 
-// From a registration of the samples, of which `counts` says what counts. Of the clock the surface
-// tells only by how far it yields: the force's rise is that of parabolas through some forty
-// samples. A direction is frozen where its predicted deviation, as a length over the path's extent,
-// is above ten times that of the samples; so is what the surface does not see of the pose
-// (freeMotions). Throws std::invalid_argument where the numbers of samples and counts differ, or
-// none counts, and Error where Ceres cannot be loaded.
+// Starts from a registration with the inliers `inliers`. The clock is observable only through the
+// compliance; the rate of the force is that of local parabolas through about forty samples. A
+// direction stays fixed if its predicted deviation, as a length over the path's extent, exceeds ten
+// times that of the samples, or if it is an unobservable motion of the pose (unobservableMotions).
+// Throws std::invalid_argument if the numbers of samples and inlier flags differ, or without
+// inliers, and Error if Ceres cannot be loaded.
 JointFit fitJointly(const SurfaceTarget& target, const std::vector<PathSample>& path,
-                    const std::vector<bool>& counts, const Pose& mesh_from_path,
+                    const std::vector<bool>& inliers, const Pose& mesh_from_path,
                     const JointOptions& options = {});
 
-// The same from a registration of the path, which with its samples becomes what the joint fit says:
-// what counts is chosen anew, whether it converged is judged by the distances that are left, and
-// where `registering` asks for other places, they are those of the path that was found. Throws
-// Cancelled.
+// The same for a registered path; updates the path and its registration. Inliers are selected
+// again, convergence is tested on the final residuals, and alternative poses are searched for the
+// refined path if `registering` requests them. Throws Cancelled.
 JointFit refine(const SurfaceTarget& target, const JointOptions& options,
                 RegistrationOptions registering, std::vector<PathSample>& path, Registration& found,
                 Progress& progress);

@@ -7,7 +7,7 @@
 namespace patina {
 namespace {
 
-constexpr double kPlanar = 1e-6; // smallest extent over the largest: below it points lie in a plane
+constexpr double kPlanar = 1e-6; // smallest over largest singular value of planar points
 
 Vec3 mean(const std::vector<Vec3>& points) {
   Vec3 sum = Vec3::Zero();
@@ -20,7 +20,7 @@ void requirePairs(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
     throw std::invalid_argument("points to be fitted come in pairs");
 }
 
-// The turn nearest to a matrix.
+// Returns the rotation nearest to a matrix.
 Eigen::Matrix3d nearestTurn(const Eigen::Matrix3d& matrix) {
   const Svd svd(matrix);
   Eigen::Matrix3d u = svd.u;

@@ -1,5 +1,4 @@
-// Points onto points (A11): the turn and shift that bring one list nearest to another, in the mean
-// square.
+// Rigid motion between corresponding points with the least mean square (A11).
 #pragma once
 
 #include <optional>
@@ -9,12 +8,13 @@
 
 namespace patina {
 
-// By the singular values of the cross-covariance (Arun, Huang and Blostein 1987), never a
-// reflection. As many points in both; throws std::invalid_argument otherwise or without any.
+// Solves the orthogonal Procrustes problem without reflection by the singular values of the
+// cross-covariance (Arun, Huang & Blostein 1987; Kabsch 1978). Throws std::invalid_argument unless
+// both lists have the same size above 0.
 Pose fitRigid(const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
-// As the paper words it: a 4 x 4 matrix by least squares, whose turning part then gets unit
-// singular values. Nullopt where the points lie in a plane and leave the matrix open (F10).
+// Fits a 4 x 4 matrix by least squares and orthonormalises its linear part, as in the paper.
+// Returns nullopt for coplanar points, which do not determine the matrix (F10).
 std::optional<Pose> fitAffineThenRigid(const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
 } // namespace patina

@@ -7,8 +7,8 @@
 
 namespace patina {
 
-RegistrationOptions optionsFor(const std::vector<PathSample>& path) {
-  constexpr double kPlaces = 1. / 200; // of the path's radius: nearer samples are one place
+RegistrationOptions defaultOptions(const std::vector<PathSample>& path) {
+  constexpr double kPlaces = 1. / 200; // sample spacing over the path's radius
   RegistrationOptions options;
   std::vector<Vec3> points;
   std::vector<double> sigmas;
@@ -17,16 +17,16 @@ RegistrationOptions optionsFor(const std::vector<PathSample>& path) {
     sigmas.push_back(sample.sigma);
     options.force.push_back(sample.force);
   }
-  // Without a force nothing is known of what yields.
+  // The compliance is not observable without forces.
   if (std::all_of(options.force.begin(), options.force.end(), [](double f) { return f == 0; }))
     options.force.clear();
   options.noise = percentiles(sigmas).p50;
-  options.place = kPlaces * scaleOf(points, Pose::Identity()).radius;
-  options.rivals = true;
+  options.sample_spacing = kPlaces * scaleOf(points, Pose::Identity()).radius;
+  options.alternatives = true;
   return options;
 }
 
-CoarseSearch anywhereOn(const SurfaceTarget& target) {
+CoarseSearch globalSearch(const SurfaceTarget& target) {
   return {std::numbers::pi, target.extent() / 2, 12, 8000};
 }
 

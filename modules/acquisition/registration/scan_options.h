@@ -1,17 +1,16 @@
-// How a scan's path is registered unless somebody says otherwise: one home for what the command,
-// the window and the studies begin with.
+// Default options for registering a scan's path, shared by command, window and studies.
 #pragma once
 
 #include "acquisition/registration/register_path.h"
-#include "acquisition/scan_samples.h"
+#include "acquisition/values/scan_samples.h"
 
 namespace patina {
 
-// The noise is the median of what samples state, places are a 200th of the path's radius, how far
-// the surface yields is found where the probe felt anything, and other places are looked for.
-RegistrationOptions optionsFor(const std::vector<PathSample>& path);
+// Uses the median of the samples' deviations as noise and averages samples within a 200th of the
+// path's radius. Estimates the compliance if there are forces, and searches alternative poses.
+RegistrationOptions defaultOptions(const std::vector<PathSample>& path);
 
-// Where nothing is known of the place.
-CoarseSearch anywhereOn(const SurfaceTarget& target);
+// Returns the search options for an unknown pose.
+CoarseSearch globalSearch(const SurfaceTarget& target);
 
 } // namespace patina

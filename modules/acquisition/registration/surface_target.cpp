@@ -2,13 +2,16 @@
 
 #include <cmath>
 
+#include "core/error.h"
+#include "core/numbers.h"
+
 namespace patina {
 namespace {
 
-constexpr double kCrease = 0.35; // [rad]: what is bent by more is meant to be an edge
+constexpr double kCrease = 0.35; // larger angles between faces are edges of the body [rad]
 
-// About a vertex, from the angles between the normals of the faces there: an edge of length e bent
-// by an angle a stands e a / 8 off an arc.
+// Returns the chordal error at each vertex, from the angles between the normals of its faces: an
+// edge of length e and angle a deviates by e a / 8 from an arc.
 std::vector<float> facetErrors(const TriangleMesh& mesh) {
   const std::size_t n = mesh.positions.size();
   std::vector<Vec3> normal(n, Vec3::Zero());
@@ -35,28 +38,33 @@ SurfaceTarget::SurfaceTarget(TriangleMesh mesh, double offset, bool sided)
     : mesh_(std::move(mesh)), tree_(mesh_), offset_(offset), facet_error_(facetErrors(mesh_)) {
   if (offset != 0 || sided)
     side_.emplace(mesh_, std::vector<std::uint8_t>(mesh_.triangles.size(), 1));
+  const double longest = bounds(mesh_).sizes().maxCoeff();
+  if (2 * std::abs(offset) > longest)
+    throw Error("a tip of radius " + formatLength(std::abs(offset)) + " is larger than the mesh (" +
+                formatLength(longest) +
+                "): lengths without a unit are in metres, and --unit is that of the mesh");
 }
 
-Miss SurfaceTarget::miss(const Vec3& p, std::int32_t warm_face) const {
+SurfaceResidual SurfaceTarget::residual(const Vec3& p, std::int32_t warm_face) const {
   const ClosestPoint closest = tree_.closestPoint(p, warm_face);
-  Miss miss;
-  miss.foot = closest.surface;
-  miss.at = closest.point;
+  SurfaceResidual residual;
+  residual.foot = closest.surface;
+  residual.at = closest.point;
   const bool on_face = closest.surface.barycentric.minCoeff() > 0;
   const Vec3 away = p - closest.point;
   const bool behind = side_ && side_->at(p, closest.surface.face) == Side::back;
   if (on_face || closest.distance < 1e-12) {
-    miss.direction = faceNormal(mesh_, index(closest.surface.face));
-    miss.distance = away.dot(miss.direction);
+    residual.direction = faceNormal(mesh_, index(closest.surface.face));
+    residual.distance = away.dot(residual.direction);
   } else {
-    miss.direction = (behind ? -1 : 1) * away / closest.distance;
-    miss.distance = behind ? -closest.distance : closest.distance;
+    residual.direction = (behind ? -1 : 1) * away / closest.distance;
+    residual.distance = behind ? -closest.distance : closest.distance;
   }
-  miss.distance -= offset_;
-  return miss;
+  residual.distance -= offset_;
+  return residual;
 }
 
-double SurfaceTarget::facetError(std::int32_t face) const {
+double SurfaceTarget::chordError(std::int32_t face) const {
   double most = 0;
   for (const std::int32_t v : mesh_.triangles[index(face)])
     most = std::max<double>(most, facet_error_[index(v)]);

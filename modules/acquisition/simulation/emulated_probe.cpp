@@ -10,7 +10,7 @@
 namespace patina {
 namespace {
 
-constexpr std::uint64_t kClockBegins = 123'456'789'000; // [ns]: it ran before anyone asked
+constexpr std::uint64_t kClockBegins = 123'456'789'000; // start of the clock [ns]
 
 template <std::size_t room> void put(char (&into)[room], std::string_view word) {
   std::copy_n(word.data(), std::min(word.size(), room), into);
@@ -33,16 +33,18 @@ EmulatedProbe::EmulatedProbe(const EmulatedProbeSpec& spec) : spec_(spec), rando
   put(description_.serial, "EMULATED-" + std::to_string(spec.seed));
   description_.firmware = 1 << 16;
   description_.period_ns = static_cast<std::uint32_t>(std::lround(1e9 / spec.rate));
-  const char* names[] = {"force", "a1u", "a1v", "a2u", "a2v"};
-  for (std::size_t i = 0; i < PROBE_CHANNELS; ++i) {
+  description_.gyroscope = spec_.gyroscope;
+  const char* names[] = {"force", "a1u", "a1v", "a2u", "a2v", "wx", "wy", "wz"};
+  for (std::size_t i = 0; i < PROBE_MAX_CHANNELS; ++i) {
     probe_channel& channel = description_.channel[i];
     put(channel.name, names[i]);
-    put(channel.unit, i == 0 ? "N" : "m/s^2");
-    channel.scale = i == 0 ? 0.02F : 0.147F; // A02, A03
+    const bool is_rate = i >= PROBE_CHANNELS;
+    put(channel.unit, i == 0 ? "N" : is_rate ? "rad/s" : "m/s^2");
+    channel.scale = i == 0 ? 0.02F : is_rate ? 5e-4F : 0.147F; // A02, A03
     channel.zero = i == 0 ? 12 : 0;
-    channel.low = i == 0 ? -2 : -30;
-    channel.high = i == 0 ? 10 : 30;
-    channel.noise = i == 0 ? 0.005F : 0.02F;
+    channel.low = i == 0 ? -2 : is_rate ? -15 : -30;
+    channel.high = i == 0 ? 10 : is_rate ? 15 : 30;
+    channel.noise = i == 0 ? 0.005F : is_rate ? 0.003F : 0.02F;
     channel.calibrated = 20000;
   }
   start();
@@ -50,7 +52,7 @@ EmulatedProbe::EmulatedProbe(const EmulatedProbeSpec& spec) : spec_(spec), rando
 
 void EmulatedProbe::start() {
   probe_start(&packer_, &description_, spec_.samples_per_packet);
-  made_ = lost_ = spoilt_ = 0;
+  made_ = lost_ = corrupted_ = 0;
 }
 
 std::array<std::byte, kProbePacket> EmulatedProbe::describe(unsigned part) const {
@@ -68,7 +70,7 @@ void EmulatedProbe::emit(std::array<std::byte, kProbePacket>& packet, double sen
     return;
   }
   if (spec_.corrupt > 0 && chance(random_) < spec_.corrupt) {
-    spoilt_ += counts;
+    corrupted_ += counts;
     packet[random_() % kProbePacket] ^= static_cast<std::byte>(1U << random_() % 8);
   }
   send(packet, sent);
@@ -81,14 +83,15 @@ void EmulatedProbe::until(double t, const std::function<void(ProbePacket, double
     if (sent > t) return;
     if (spec_.describe_every > 0 && own >= next_part_) {
       next_part_ += spec_.describe_every;
-      auto packet = describe(part_++ % PROBE_PARTS);
+      auto packet = describe(part_++ % parts());
       emit(packet, sent, false, send);
     }
     const double press = std::max(0., std::sin(2 * std::numbers::pi * 2 * own));
-    std::array<std::int16_t, PROBE_CHANNELS> counts{};
+    std::array<std::int16_t, PROBE_MAX_CHANNELS> counts{};
     counts[0] = countOf(description_.channel[0], press);
     for (const std::size_t upright : {2, 4})
       counts[upright] = countOf(description_.channel[upright], 9.80665);
+    counts[7] = countOf(description_.channel[7], 2 * std::sin(2 * std::numbers::pi * own));
     std::array<std::uint8_t, kProbePacket> raw;
     if (probe_add(&packer_, counts.data(),
                   kClockBegins + static_cast<std::uint64_t>(std::llround(1e9 * own)), 0,

@@ -1,5 +1,4 @@
-// A probe as the wire sees it: the reference packer (firmware/probe_packer.h) with a clock of its
-// own, and a line that loses and spoils packets.
+// Emulated probe: reference packer (firmware/probe_packer.h), own clock, and a faulty line.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +11,17 @@
 namespace patina {
 
 struct EmulatedProbeSpec {
-  double rate = 1000;              // samples a second, by the probe's clock
-  unsigned samples_per_packet = 4; // 1 to 4
-  double skew = 0;                 // by how much its clock runs faster
-  double loss = 0, corrupt = 0;    // of packets, the part that is lost or spoilt on the way
-  double describe_every = 0.1;     // [s] between parts of the description; 0: on request only
+  double rate = 1000;              // samples per second of the probe's clock
+  unsigned samples_per_packet = 4; // 1 to 4, or to 2 with a gyroscope
+  bool gyroscope = false;
+  double skew = 0;                 // relative excess rate of its clock
+  double loss = 0, corrupt = 0;    // share of the packets that are lost or corrupted
+  double describe_every = 0.1;     // time between parts of the description [s]; 0: on request only
   std::uint32_t seed = 1;
 };
 
-// A pen that is pressed and let go, twice a second; accelerations at rest, the pen upright.
+// A pen that is pressed and released twice a second; accelerations of an upright pen at rest, and
+// the rates of one that swings about its shaft once a second.
 class EmulatedProbe {
  public:
   // Throws std::invalid_argument.
@@ -28,13 +29,14 @@ class EmulatedProbe {
   EmulatedProbe(const EmulatedProbe&) = delete;
   EmulatedProbe& operator=(const EmulatedProbe&) = delete;
 
-  void start(); // counts from 0, with a clock that goes on
-  // Gives what leaves until the true time t [s]: `sent`, the true time of its last sample.
+  void start(); // counts from 0; the clock continues
+  // Sends the packets until the true time t [s]; `sent` is the true time of the last sample.
   void until(double t, const std::function<void(ProbePacket, double sent)>& send);
   std::array<std::byte, kProbePacket> describe(unsigned part) const;
-  std::size_t made() const { return made_; }     // packets of samples
-  std::size_t lost() const { return lost_; }     // of them
-  std::size_t spoilt() const { return spoilt_; } // of them
+  unsigned parts() const { return probe_parts(&packer_); } // packets per description
+  std::size_t made() const { return made_; }           // number of sample packets
+  std::size_t lost() const { return lost_; }           // lost ones of them
+  std::size_t corrupted() const { return corrupted_; } // corrupted ones of them
 
  private:
   void emit(std::array<std::byte, kProbePacket>& packet, double sent, bool counts,
@@ -47,7 +49,7 @@ class EmulatedProbe {
   std::uint64_t tick_ = 0;
   double next_part_ = 0;
   unsigned part_ = 0;
-  std::size_t made_ = 0, lost_ = 0, spoilt_ = 0;
+  std::size_t made_ = 0, lost_ = 0, corrupted_ = 0;
 };
 
 } // namespace patina

@@ -8,7 +8,7 @@
 namespace patina {
 namespace {
 
-constexpr double kReach = 1e-3; // about a place that is scanned the surface goes on [m]
+constexpr double kReach = 1e-3; // the surface must continue within this distance of the path [m]
 
 class Heights {
  public:
@@ -39,15 +39,15 @@ class Heights {
 
 } // namespace
 
-SimulatedHand strokesOver(const TriangleMesh& mesh, std::uint32_t seed, double seconds,
-                          double speed) {
+SimulatedHand scanPathsOver(const TriangleMesh& mesh, std::uint32_t seed, double seconds,
+                            double speed) {
   const auto heights = std::make_shared<const Heights>(mesh);
   StrokeArea area;
   area.low = heights->box().min().head<2>();
   area.high = heights->box().max().head<2>();
   area.reachable = [heights](const Vec2& place) { return heights->reachable(place); };
   SimulatedHand hand = strokes(seed, seconds, speed, area);
-  hand.air += heights->box().max().z();
+  hand.travel_height += heights->box().max().z();
   hand.relief = [heights](const Vec2& place) { return heights->at(place); };
   return hand;
 }

@@ -1,4 +1,4 @@
-// A hand that scans a mesh from above, where its surface can be drawn over.
+// Scan paths of a simulated hand over a mesh from above.
 #pragma once
 
 #include "acquisition/simulation/simulated_hand.h"
@@ -6,9 +6,9 @@
 
 namespace patina {
 
-// Strokes over what of the mesh is seen along -z and no steeper than 45 degrees; the tip is a
-// point. Throws Error where that is too little.
-SimulatedHand strokesOver(const TriangleMesh& mesh, std::uint32_t seed, double seconds,
-                          double speed);
+// Returns strokes over the parts of the mesh that are visible along -z and no steeper than 45
+// degrees, for a point tip. Throws Error if they are too small.
+SimulatedHand scanPathsOver(const TriangleMesh& mesh, std::uint32_t seed, double seconds,
+                            double speed);
 
 } // namespace patina

@@ -1,17 +1,17 @@
-// How far a path is from the truth, where that is known.
+// Error of a path against its known truth.
 #pragma once
 
-#include "acquisition/scan_samples.h"
+#include "acquisition/values/scan_samples.h"
 
 namespace patina {
 
 struct PathError {
-  double rms = 0, most = 0; // of the tip's distance [m]
-  double nees = 0;          // squared errors over sigma squared, an axis: 1 where sigmas hold
-  std::size_t samples = 0;  // that lie within the truth's times
+  double rms = 0, most = 0; // distance of the tips [m]
+  double nees = 0; // mean squared error per axis over sigma squared: 1 if the sigmas are right
+  std::size_t samples = 0; // samples within the truth's times
 };
 
-// `truth` in the order of its time; between two samples it goes straight.
+// `truth` is in the order of time and interpolated linearly.
 PathError errorOf(const std::vector<PathSample>& path, const std::vector<PathSample>& truth);
 
 } // namespace patina

@@ -1,28 +1,83 @@
-// The frames that a camera would take of a simulated hand's probe (A04).
+// Renders a camera's frames of a simulated hand's probe (A04).
 #pragma once
 
-#include "acquisition/scan_samples.h"
-#include "acquisition/simulation/frame_renderer.h"
+#include <functional>
+
 #include "acquisition/simulation/simulated_hand.h"
+#include "acquisition/values/camera.h"
+#include "acquisition/values/scan_samples.h"
 
 namespace patina {
 
-// A cube about the probe's origin with markers 0 to 4 of a family on all faces but the one towards
-// the tip, each face a margin of one bit wide. `edge` [m].
+// Renders pictures of a marker rig by ray casting, for tests and simulated scans (A04). It shares
+// only the lens model with the tracker.
+
+// A marker of the rig as it is printed.
+struct PrintedMarker {
+  RigMarker place;
+  int side = 0;           // bits
+  std::uint64_t code = 0; // see MarkerFamily
+  double margin = 1;      // white margin around the black border, in bits
+};
+
+// A disc in front of everything, such as a finger or a cable.
+struct Occluder {
+  Vec2 middle = Vec2::Zero(); // [px]
+  double radius = 0;          // [px]
+  double grey = 0.4;
+};
+
+struct FrameLook {
+  double white = 0.85, black = 0.08; // grey of the print; 1 is white
+  double ground = 0.45;              // grey of the background
+  double waves = 0.08;               // relative amplitude of the background's ripples
+  double shade = 0.3;                // relative fall-off of the light across the picture
+  double shade_angle = 0.6;          // direction of the fall-off [rad]
+  double slope_shade = 0.4;          // relative fall-off on a face seen edge on
+  double blur = 0.6;                 // deviation of the Gaussian blur of lens and focus [px]
+  double noise = 2;                  // deviation of a pixel [grey levels]
+  std::vector<Occluder> occluders;
+};
+
+// Data common to all frames of a camera.
+class FrameRenderer {
+ public:
+  // Throws std::invalid_argument if the lens model is not invertible within the picture. Beyond 89
+  // degrees from the axis of a fisheye lens the picture shows the ground.
+  FrameRenderer(const Camera& camera, std::vector<PrintedMarker> markers);
+
+  // `camera_from_probe` are poses at even times of the exposure, at least one.
+  GreyFrame render(const std::vector<Pose>& camera_from_probe, const FrameLook& look,
+                   std::uint32_t seed) const;
+
+  // Projects a point of the camera's frame to a pixel.
+  Vec2 pixelOf(const Vec3& in_camera) const;
+
+ private:
+  Camera camera_;
+  std::vector<PrintedMarker> markers_;
+  std::vector<Vec2> rays_;      // through corners of pixels, on the plane z = 1
+  std::vector<double> ripples_; // background ripple of each pixel
+};
+
+// Returns a cube about the probe's origin with markers 0 to 4 of a family on all faces except that
+// towards the tip; margins are one bit wide. `edge` [m].
 std::vector<RigMarker> markerCube(const std::string& family, int side, double edge);
 
-struct FrameCourse {
-  Pose camera_from_world = Pose::Identity();
-  double rate = 30;         // [Hz]
-  double exposure = 4e-3;   // around each frame's time: what moves meanwhile is blurred [s]
-  std::vector<Gap> covered; // times in which something is before the markers
+struct CaptureSettings {
+  double rate = 30;            // [Hz]
+  double exposure = 4e-3;      // centered at each frame's time, with motion blur [s]
+  std::vector<Gap> occlusions; // times with occluded markers
   FrameLook look;
   std::uint32_t seed = 1;
 };
 
-int frameCount(const SimulatedHand& hand, const FrameCourse& course);
-// Frame i, at the time i / rate.
-GreyFrame frameAt(const FrameRenderer& renderer, const SimulatedHand& hand, const ProbeModel& probe,
-                  const FrameCourse& course, int i);
+using ProbeMotion = std::function<Pose(double t)>; // camera_from_probe
+// Refers to the hand, which must stay as it is.
+ProbeMotion motionOf(const SimulatedHand& hand, const ProbeModel& probe,
+                     const Pose& camera_from_world);
+// Returns frame i, at the time i / rate.
+GreyFrame frameAt(const FrameRenderer& renderer, const ProbeMotion& camera_from_probe,
+                  const CaptureSettings& course, int i);
 
 } // namespace patina

@@ -20,7 +20,7 @@ Camera usualCamera() {
 Pose cameraOver(const Box3& box, double over) {
   const Vec3 middle = box.center() + over * Vec3::UnitZ(),
              eye = middle + 0.4 * Vec3(0, -0.5, 0.8).normalized();
-  Eigen::Matrix3d axes; // of the camera: x right, y down, z forward
+  Eigen::Matrix3d axes; // camera axes: x right, y down, z forward
   axes.col(2) = (middle - eye).normalized();
   axes.col(0) = axes.col(2).cross(Vec3::UnitZ()).normalized();
   axes.col(1) = axes.col(2).cross(axes.col(0));
@@ -31,15 +31,17 @@ Pose cameraOver(const Box3& box, double over) {
 }
 
 std::size_t writeFrames(const std::filesystem::path& folder, const Camera& camera,
-                        const SimulatedHand& hand, const ProbeModel& probe,
-                        const std::string& family, const FrameCourse& course, Progress& progress) {
-  const MarkerFamily& markers = markerFamily(family);
+                        const ProbeMotion& camera_from_probe, double seconds,
+                        const std::vector<RigMarker>& markers, const CaptureSettings& course,
+                        Progress& progress) {
   std::vector<PrintedMarker> printed;
-  for (const RigMarker& marker : markerCube(family, markers.side, kCubeEdge))
-    printed.push_back({marker, markers.side, markers.code[static_cast<std::size_t>(marker.id)]});
+  for (const RigMarker& marker : markers) {
+    const MarkerFamily& family = markerFamily(marker.family);
+    printed.push_back({marker, family.side, family.code[static_cast<std::size_t>(marker.id)]});
+  }
   const FrameRenderer renderer(camera, printed);
   CsvTable times{{"frame", "t [s]"}, {}};
-  const int count = frameCount(hand, course);
+  const auto count = static_cast<int>(seconds * course.rate);
   makeFolder(folder / "frames");
   std::atomic<int> done{0};
   tbb::parallel_for(0, count, [&](int i) {
@@ -47,7 +49,7 @@ std::size_t writeFrames(const std::filesystem::path& folder, const Camera& camer
     progress.report(static_cast<double>(done++) / count, "frames");
     char name[32];
     std::snprintf(name, sizeof name, "frames/%06d.png", i);
-    writeGrey(folder / name, frameAt(renderer, hand, probe, course, i));
+    writeGrey(folder / name, frameAt(renderer, camera_from_probe, course, i));
   });
   for (int i = 0; i < count; ++i) times.rows.push_back({static_cast<double>(i), i / course.rate});
   writeCsv(folder / "frames.csv", times);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace patina {
@@ -41,10 +42,11 @@ std::vector<CameraPose> simulateCamera(const SimulatedHand& hand, const ProbeMod
                                        const SimulatedCamera& camera, std::uint32_t seed) {
   Noise noise(seed);
   std::vector<CameraPose> poses;
+  const HandCourse course(hand);
   const int frames = static_cast<int>(hand.seconds() * camera.rate);
   for (int frame = 0; frame < frames; ++frame) {
     const double t = frame / camera.rate;
-    const HandState state = handAt(hand, t);
+    const HandState state = handAt(course, t);
     CameraPose pose;
     pose.t = t;
     pose.position = camera.camera_from_world * place(state, probe, Vec3::Zero()) +
@@ -65,12 +67,13 @@ std::vector<ProbeSample> simulateProbe(const SimulatedHand& hand, const ProbeMod
   Noise noise(seed);
   std::vector<ProbeSample> samples;
   const int count = static_cast<int>(hand.seconds() * stream.rate);
-  // Accelerations are second differences over a sample's time: that is their anti-aliasing, too.
+  // Second differences over one sample's time, which also prevent aliasing.
   const double reach = 0.5 / stream.rate;
+  const HandCourse course(hand);
   for (int i = 0; i < count; ++i) {
     const double t = i / stream.rate;
-    const HandState before = handAt(hand, t - reach), now = handAt(hand, t),
-                    after = handAt(hand, t + reach);
+    const HandState before = handAt(course, t - reach), now = handAt(course, t),
+                    after = handAt(course, t + reach);
     ProbeSample sample;
     sample.t = t + stream.clock_offset + stream.clock_skew * t;
     for (std::size_t k = 0; k < probe.axes.size(); ++k) {
@@ -91,12 +94,34 @@ std::vector<ProbeSample> simulateProbe(const SimulatedHand& hand, const ProbeMod
   return samples;
 }
 
+std::vector<RateSample> simulateRates(const SimulatedHand& hand, const ProbeModel& probe,
+                                      const SimulatedProbe& stream, std::uint32_t seed) {
+  Noise noise(seed);
+  std::vector<RateSample> rates;
+  const int count = static_cast<int>(hand.seconds() * stream.rate);
+  const double reach = 0.5 / stream.rate;
+  const HandCourse course(hand);
+  for (int i = 0; i < count; ++i) {
+    const double t = i / stream.rate;
+    const Eigen::AngleAxisd turn(handAt(course, t - reach).orientation.conjugate() *
+                                 handAt(course, t + reach).orientation);
+    RateSample sample;
+    sample.t = t + stream.clock_offset + stream.clock_skew * t;
+    const double angle = std::remainder(turn.angle(), 2 * std::numbers::pi);
+    sample.rate =
+        angle / (2 * reach) * turn.axis() + stream.rate_bias + noise.vector(probe.rate_noise);
+    if (!lost(stream.gaps, t)) rates.push_back(sample);
+  }
+  return rates;
+}
+
 std::vector<PathSample> truthAt(const SimulatedHand& hand, const Pose& camera_from_world,
                                 const std::vector<double>& times) {
   std::vector<PathSample> truth;
   truth.reserve(times.size());
+  const HandCourse course(hand);
   for (const double t : times) {
-    const HandState state = handAt(hand, t);
+    const HandState state = handAt(course, t);
     PathSample sample;
     sample.t = t;
     sample.position = camera_from_world * state.tip;

@@ -55,7 +55,7 @@ std::function<double(const Vec2&)> roughSurface(std::uint32_t seed, double rms) 
 
 std::vector<double> milledProfile(std::uint32_t seed, double length, double step) {
   std::mt19937 random(seed);
-  constexpr double kCutter = 0.8e-3; // radius of its arcs [m]
+  constexpr double kCutter = 0.8e-3; // radius of the arcs [m]
   std::vector<double> heights(static_cast<std::size_t>(length / step), 1.);
   for (double middle = 0; middle < length + 1e-3; middle += drawn(random, 0.35e-3, 0.65e-3)) {
     const double depth = drawn(random, -15e-6, 15e-6);
@@ -100,13 +100,12 @@ std::vector<double> envelope(const std::vector<double>& heights, double step, do
 TraceReading readTrace(const std::vector<double>& heights, double step, double speed, double rate,
                        double acceleration_step, double acceleration_noise, double offset,
                        std::uint32_t seed) {
-  // A cosine series needs no period; its terms below half the rate are all that a sample may know.
+  // A cosine series needs no period; terms above half the sampling rate are left out.
   std::vector<double> level(heights);
   takeLineOff(level);
   const std::size_t n = level.size();
   const auto count = static_cast<std::size_t>(static_cast<double>(n) * step / speed * rate);
-  // cos(k (i + 1/2) pi / n) by a table of its 4 n values.
-  std::vector<double> cosines(4 * n);
+  std::vector<double> cosines(4 * n); // cos(k (i + 1/2) pi / n) from a table of its 4 n values
   for (std::size_t i = 0; i < 4 * n; ++i)
     cosines[i] = std::cos(kPi * static_cast<double>(i) / (2. * static_cast<double>(n)));
   std::vector<double> terms(count, 0);
@@ -126,7 +125,7 @@ TraceReading readTrace(const std::vector<double>& heights, double step, double s
       const double term =
           terms[k] * std::cos(kPi * static_cast<double>(k) * (static_cast<double>(i) + 0.5) /
                               static_cast<double>(count));
-      // Analog anti-aliasing, of fourth order at 0.4 of the rate.
+      // Analog anti-aliasing filter, fourth order, at 0.4 of the rate.
       const double passed = 1 / std::sqrt(1 + std::pow(pulse / (2 * kPi * 0.4 * rate), 8));
       height += term;
       acceleration -= pulse * pulse * passed * term;
@@ -134,7 +133,7 @@ TraceReading readTrace(const std::vector<double>& heights, double step, double s
     acceleration += acceleration_noise * normal(random) + offset;
     TracedSample sample;
     sample.t = static_cast<double>(i) / rate;
-    sample.along = sample.t * speed;
+    sample.arc_length = sample.t * speed;
     sample.speed = speed;
     sample.acceleration =
         acceleration_step > 0

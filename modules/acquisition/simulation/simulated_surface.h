@@ -1,4 +1,4 @@
-// Surfaces to scan whose heights are known, and what a probe's tip makes of them.
+// Surfaces of known height and the readings of a probe's tip on them.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,20 @@
 
 namespace patina {
 
-// Isotropic roughness of this rms [m]: waves of 0.8 to 6.4 mm in all directions, high as they are
-// long.
+// Isotropic roughness of this rms [m]: waves of 0.8 to 6.4 mm, as high as they are long.
 std::function<double(const Vec2&)> roughSurface(std::uint32_t seed, double rms);
 
-// A profile as a milling cutter leaves it: arcs of the cutter side by side, with an uneven feed and
-// waviness below; samples `step` apart [m].
+// Milled profile, samples `step` apart [m]: arcs of the cutter, uneven feed, and waviness.
 std::vector<double> milledProfile(std::uint32_t seed, double length, double step);
 
-// The envelope that the middle of a round tip follows over heights `step` apart (dilation), less
-// the tip's radius. From whole samples: exact at them.
+// Dilates heights `step` apart by a round tip, minus its radius; exact at the samples.
 std::vector<double> envelope(const std::vector<double>& heights, double step, double radius);
 
-// What a probe reads that is drawn over heights `step` apart at a steady speed: band-limited below
-// half the rate, accelerations in steps of the sensor. `offset` shifts the steps.
+// Readings of a probe stroked at constant speed over heights `step` apart: band-limited below half
+// the rate, accelerations quantised. `offset` shifts the quantisation steps.
 struct TraceReading {
   std::vector<TracedSample> samples;
-  std::vector<double> heights; // the truth at the samples, their best line taken off [m]
+  std::vector<double> heights; // true heights at the samples, without their best line [m]
 };
 TraceReading readTrace(const std::vector<double>& heights, double step, double speed, double rate,
                        double acceleration_step, double acceleration_noise, double offset,

@@ -1,26 +1,47 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <deque>
 #include <future>
 #include <thread>
 #include <utility>
 
 #include "acquisition/files/frame_files.h"
+#include "acquisition/loaded/video.h"
 #include "acquisition/sources/pace.h"
 #include "acquisition/sources/sources.h"
-#include "acquisition/video_library.h"
 #include "core/csv.h"
 #include "core/error.h"
+#include "core/loaded_library.h"
+#include "core/memory_left.h"
 #include "core/numbers.h"
 
 namespace patina {
 namespace {
 
-constexpr double kHighestRate = 1000; // [Hz]; what is beyond is a clock's and not a video's
-constexpr double kLongest = 1e7;      // seconds of a video
+// Returns OpenCV's readers of videos and cameras, loaded on first use. Throws Error that names the
+// missing file and the places searched.
+const VideoLibrary& videoLibrary() {
+  static std::string video_cause;
+  static void* const video_symbol = [] {
+    requireRoomToLoad("the library of video");
+    // Read while loading: silences FFmpeg's console output, whose content is in our errors, and
+    // shortens the timeout of a silent camera.
+    ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
+    ::setenv("OPENCV_VIDEOIO_V4L_SELECT_TIMEOUT", "1", 0);
+    return loadedSymbol("patina_video.so", kVideoLibrarySymbol, video_cause);
+  }();
+  if (!video_symbol)
+    throw Error("videos and cameras need Patina's library of video, which cannot be loaded: " +
+                video_cause);
+  return *reinterpret_cast<VideoLibraryFunction*>(video_symbol)();
+}
 
-// Frames of a folder, and a line about what else is in it.
+constexpr double kHighestRate = 1000; // [Hz]; higher rates are time bases of containers
+constexpr double kLongest = 1e7;      // longest video [s]
+
+// Frames of a folder, and a line about its other files.
 struct FolderList {
   std::vector<Frame> frames;
   bool timed;
@@ -40,28 +61,32 @@ SourceFrame readFrame(const Frame& frame) {
   return read;
 }
 
-// Reads one frame ahead, in a thread of its own, while the caller works on the one before.
+// Reads one frame ahead in its own thread.
 class FolderFrames : public FrameSource {
  public:
   FolderFrames(FolderList list) : list_(std::move(list)) {}
   std::optional<SourceFrame> next() override {
-    if (stopped_ || at_ == list_.frames.size()) return std::nullopt;
+    if (stopped_ || at_ >= list_.frames.size()) return std::nullopt;
     SourceFrame frame = ahead_.valid() ? ahead_.get() : readFrame(list_.frames[at_]);
-    if (++at_ < list_.frames.size())
+    if ((at_ += step_) < list_.frames.size())
       ahead_ = std::async(std::launch::async, readFrame, std::cref(list_.frames[at_]));
     return frame;
   }
   std::optional<std::size_t> count() const override { return list_.frames.size(); }
   bool isLive() const override { return false; }
   void stop() noexcept override { stopped_ = true; }
+  bool keepEach(std::size_t step) override {
+    step_ = step;
+    return true;
+  }
   bool arePictures() const override { return !list_.timed; }
   std::vector<std::string> notes() const override { return list_.notes(); }
 
  private:
   FolderList list_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 0, step_ = 1;
   std::atomic<bool> stopped_{false};
-  std::future<SourceFrame> ahead_; // the last member: it waits for its thread before they go
+  std::future<SourceFrame> ahead_; // last member: its destructor waits for the thread
 };
 
 class ReplayedFrames : public FrameSource {
@@ -84,9 +109,9 @@ class ReplayedFrames : public FrameSource {
   FolderList list_;
   double start_;
   std::size_t at_ = 0;
-  // Read before it is due, as reading takes its time, and the first as long as loading a library.
+  // Read before it is due, because reading and the first loading of a library take time.
   std::optional<SourceFrame> ahead_;
-  Pace pace_;
+  StoppableTimer pace_;
 };
 
 class VideoFrames : public FrameSource {
@@ -119,30 +144,28 @@ class VideoFrames : public FrameSource {
   std::vector<std::string> notes() const override {
     std::vector<std::string> lines;
     if (untimed_ && !(told_rate_ > 0))
-      lines.push_back(path_ + ": holds no times of its frames, so " + formatNumber(reader_->rate) +
-                      " a second are taken; --rate tells another number");
+      lines.push_back(path_ + ": has no frame times, so " + formatNumber(reader_->rate) +
+                      " frames per second are assumed; --rate sets another number");
     if (reader_->lost > 0 && !untimed_ && !(told_rate_ > 0))
       lines.push_back(path_ + ": " + formatCount(index(reader_->lost)) +
-                      " of its pictures cannot be decoded, and as nobody knows which, frames may "
-                      "have the time of one before them");
+                      " of its pictures cannot be decoded; it is unknown which, so that frames may "
+                      "have the time of an earlier one");
     return lines;
   }
 
  private:
-  // Frames of an even rate, where one was told or the container has no times.
+  // Returns the time of a frame at an even rate, if one was given or the container has no times.
   double evenTime() const {
     const double said = reader_->rate <= kHighestRate ? reader_->rate : 0;
     const double rate = told_rate_ > 0 ? told_rate_ : said;
     if (at_ > 0 && !(rate > 0))
-      throw FileError(path_, 0,
-                      "holds no times of its frames and does not say how many there are a second: "
-                      "--rate");
+      throw FileError(path_, 0, "has neither frame times nor a frame rate: set --rate");
     return at_ > 0 ? static_cast<double>(at_) / rate : 0;
   }
 
   double timeOf(double stamp, SourceFrame& frame) {
     const bool readable = std::abs(stamp) < kLongest, later = readable && stamp > stamp_;
-    // A container without times has none, or one for all.
+    // Containers without times report none, or the same for all frames.
     if (!ended_ && ((at_ == 0 && !readable) || (at_ == 1 && !later))) untimed_ = true;
     if (at_ > 0 && later) gap_ = std::max(gap_, stamp - stamp_);
     if (later) stamp_ = stamp;
@@ -152,13 +175,13 @@ class VideoFrames : public FrameSource {
       if (frame.fault.empty())
         frame.fault = frame.name + ": its time in the container is not after that of the frame "
                                    "before it";
-      stamp_ += 1e-6; // so that no two frames have one time
+      stamp_ += 1e-6; // keeps frame times distinct
     }
     return stamp_;
   }
 
-  // Containers round their count, or know only how long they last; and what was cut out of a video
-  // may still be in it. What else is missing is damage.
+  // Returns true if the file is complete. Containers round their frame count or only store the
+  // duration, and cut frames may still be in the file. Other missing frames are damage.
   bool isWhole() const {
     const auto said = static_cast<std::size_t>(reader_->count);
     if (at_ + 2 + said / 100 >= said) return true;
@@ -169,16 +192,15 @@ class VideoFrames : public FrameSource {
 
   std::string path_;
   std::unique_ptr<VideoReader> reader_;
-  double told_rate_;           // [Hz]; 0: not told
-  double stamp_ = 0, gap_ = 0; // of the last frame, and the longest step of time
+  double told_rate_;           // [Hz]; 0: not given
+  double stamp_ = 0, gap_ = 0; // time of the last frame and longest time step
   bool untimed_ = false;
   std::size_t at_ = 0;
   bool ended_ = false;
   std::atomic<bool> stopped_{false};
 };
 
-// A thread of its own waits for the camera, so that who waits for it can be told to stop, and
-// stamps do not wait for who is busy.
+// Its own thread waits for the camera, so that callers can be stopped and stamps are prompt.
 class CameraFrames : public FrameSource {
  public:
   CameraFrames(int number) : name_("camera:" + std::to_string(number)) {
@@ -209,7 +231,7 @@ class CameraFrames : public FrameSource {
   }
 
  private:
-  static constexpr std::size_t kMost = 32; // frames that wait
+  static constexpr std::size_t kMost = 32; // longest queue of frames
 
   void grab() {
     for (std::size_t number = 0;; ++number) {
@@ -247,8 +269,7 @@ int cameraNumber(const std::string& word) {
   return static_cast<int>(*number);
 }
 
-// One missing frame is a gap; where all are missing nothing can be read. One that cannot be looked
-// at is another matter, which reading it tells.
+// Throws if all frames are missing; other errors appear when a frame is read.
 FolderList framesToRead(const std::filesystem::path& folder, double rate) {
   FolderList list{{}, std::filesystem::exists(folder / "frames.csv"), {}};
   list.frames = framesOf(folder, rate, &list.left_out);

@@ -1,4 +1,4 @@
-// Waiting that another thread can end.
+// A wait that another thread can end.
 #pragma once
 
 #include <chrono>
@@ -7,9 +7,9 @@
 
 namespace patina {
 
-class Pace {
+class StoppableTimer {
  public:
-  // `seconds` after the first call of this or now(); false once it was stopped.
+  // Waits until `seconds` after the first call of this or now(); returns false once stopped.
   bool waitUntil(double seconds) {
     std::unique_lock lock(mutex_);
     const auto due = beginning(lock) + std::chrono::duration<double>(seconds);
@@ -41,7 +41,7 @@ class Pace {
   bool begun_ = false, stopped_ = false;
 };
 
-// The first time of a scan folder's frames and samples, from which a replay of either counts.
+// Returns the first time of a scan folder's frames and samples, the start of a replay of either.
 double replayStart(const std::string& folder, double first_frame);
 
 } // namespace patina

@@ -1,20 +1,47 @@
-// A probe's packets become samples, and what is missing among them is counted.
+// Decodes a probe's packets to samples and counts the missing ones.
 #pragma once
 
-#include "acquisition/sources/clock_skew.h"
+#include <optional>
+#include <vector>
+
 #include "acquisition/sources/probe_packet.h"
 #include "acquisition/sources/sources.h"
 
 namespace patina {
 
-// Times begin at 0 with the first sample and are the probe's own; where it starts anew in the
-// middle they go on by what passed here. Samples that come before their description wait for it.
+// Estimates the relative rate of a source's clock from arrival times.
+
+// Transport delay is never negative, so arrival - stamp lies above a line whose slope is the skew.
+// The line below all points that is nearest to their mean (Moon, Skelly & Towsley 1999) is an edge
+// of the lower convex hull (Zhang, Liu & Xia 2002). The error is at most the spread of the least
+// delays over the time span.
+class ClockSkew {
+ public:
+  static constexpr double kMinSpan = 10; // shortest time span for an estimate [s]
+
+  void add(double stamp, double arrival); // stamps in increasing order [s]
+  // stamps = (1 + skew) * true times, those of arrivals.
+  std::optional<double> skew() const;
+
+ private:
+  struct Point {
+    double x, y;
+  };
+  static constexpr std::size_t kMaxPoints = 1024; // longer hulls lose every other point
+
+  std::vector<Point> hull_;
+};
+
+// Times are those of the probe's clock, from 0 at the first sample; after a restart they continue
+// by the elapsed time of this machine. Samples before their description wait for it.
 class ProbeDecoder {
  public:
-  // One packet, or what came in its place, at `arrival` by this machine's clock [s]. Throws Error
-  // for a description that cannot be used, or where none comes.
-  void take(ProbePacket packet, double arrival, std::vector<ProbeSample>& into);
-  bool described() const { return described_; }
+  // Decodes one packet, or the bytes received in its place; `arrival` is the time on this machine's
+  // clock [s]. A probe with a gyroscope appends as many readings to `rates`, if it is given. Throws
+  // Error if the description is unusable or missing, or if a gyroscope comes or goes.
+  void take(ProbePacket packet, double arrival, std::vector<ProbeSample>& into,
+            std::vector<RateSample>* rates = nullptr);
+  bool hasDescription() const { return has_description_; }
   const ProbeDescription& description() const { return parts_.description(); }
   ProbeHealth health() const;
 
@@ -34,15 +61,16 @@ class ProbeDecoder {
   };
   std::vector<Arrived> inOrder(const ProbeSamples& samples, double arrival);
   double timeOf(const Arrived& packet);
-  void give(const Waiting& packet, std::vector<ProbeSample>& into);
+  void give(const Waiting& packet, std::vector<ProbeSample>& into, std::vector<RateSample>* rates);
 
-  ProbeParts parts_;
-  bool described_ = false;
+  DescriptionAssembler parts_;
+  bool has_description_ = false;
+  std::size_t channels_ = 0; // channels of the samples given; 0: none was given
   std::vector<Waiting> waiting_;
   std::optional<Last> last_;
-  bool last_begins_ = false;     // the packet that comes next is the first of a new start
-  std::vector<Arrived> earlier_; // numbers that were there, one after the other
-  std::uint64_t begin_ns_ = 0;   // where the probe's clock says begin_
+  bool last_begins_ = false;     // the next packet is the first after a restart
+  std::vector<Arrived> earlier_; // consecutive packets with known numbers
+  std::uint64_t begin_ns_ = 0;   // probe clock at begin_
   double begin_ = 0;
   ProbeHealth health_;
   ClockSkew skew_;

@@ -1,5 +1,4 @@
-// A probe's packets, read: docs/usb_protocol.md. What makes them is firmware/probe_packer.h, whose
-// code this does not share.
+// Parser of a probe's packets (docs/usb_protocol.md), apart from firmware/probe_packer.h.
 #pragma once
 
 #include <array>
@@ -16,57 +15,59 @@ namespace patina {
 
 inline constexpr std::size_t kProbePacket = 64; // [bytes]
 inline constexpr std::size_t kProbeChannels = 5;
-inline constexpr std::size_t kProbeParts = 6; // of a description
+inline constexpr std::size_t kMaxProbeChannels = 8; // channels with a gyroscope
 using ProbePacket = std::span<const std::byte>;
 
 struct ProbeChannel {
   std::string name, unit;
   double scale = 1, zero = 0;   // value = scale (count - zero)
-  double low = 0, high = 0;     // what it can show
+  double low = 0, high = 0;     // measuring range
   double noise = 0;             // standard deviation at rest
   std::uint32_t calibrated = 0; // days since 1970-01-01; 0: never
 };
 struct ProbeDescription {
   std::string name, serial;
   std::uint32_t firmware = 0; // 65536 * major + minor
-  double period = 0;          // between samples [s]
+  double period = 0;          // sampling interval [s]
   unsigned samples_per_packet = 1;
-  std::array<ProbeChannel, kProbeChannels> channels; // force, a1u, a1v, a2u, a2v
+  std::vector<ProbeChannel> channels; // force, a1u, a1v, a2u, a2v, and perhaps wx, wy, wz
+  bool hasGyroscope() const { return channels.size() == kMaxProbeChannels; }
 };
 
 struct ProbeSamples {
-  std::uint32_t packet = 0;  // its number
+  std::uint32_t packet = 0;  // packet number
   std::uint32_t first = 0;   // number of its first sample
-  std::uint64_t time_ns = 0; // of that, by the probe's clock
+  std::uint64_t time_ns = 0; // time of this sample on the probe's clock
   bool saturated = false, sensor_silent = false;
   std::size_t count = 0;
-  std::array<std::array<std::int16_t, kProbeChannels>, 4> counts{};
+  std::size_t channels = kProbeChannels; // kMaxProbeChannels with a gyroscope
+  std::array<std::array<std::int16_t, kMaxProbeChannels>, 4> counts{};
 };
 struct ProbePart {
-  std::uint32_t id = 0; // the same in all parts of a description
-  std::size_t part = 0;
+  std::uint32_t id = 0;            // equal in all parts of a description
+  std::size_t part = 0, parts = 0; // its number, from 0, and how many there are
   std::array<std::byte, 48> content{};
 };
-// monostate: none, as its length, its check or one of its numbers is wrong. Any bytes.
+// monostate: wrong length, check sum or number. Accepts any bytes.
 using ProbeContent = std::variant<std::monostate, ProbeSamples, ProbePart>;
 ProbeContent parseProbePacket(ProbePacket packet) noexcept;
 
-// Puts a description together from its parts, in any order.
-class ProbeParts {
+// Assembles a description from its parts, in any order.
+class DescriptionAssembler {
  public:
-  // true where it is complete with this part. Throws Error where it describes no probe that we can
-  // read: other channels or units, numbers that are none.
+  // Returns true if this part completes the description. Throws Error for a probe that is not
+  // supported: other channels or units, numbers that are not finite.
   bool take(const ProbePart& part);
   const ProbeDescription& description() const { return description_; }
 
  private:
   std::uint32_t id_ = 0;
-  std::array<std::optional<ProbePart>, kProbeParts> parts_;
+  std::vector<std::optional<ProbePart>> parts_;
   ProbeDescription description_;
 };
 
-// Packets out of a serial line's bytes, as they come in any pieces. A frame that holds none is
-// given as an empty one, to be counted; but not the first, whose beginning may have been missed.
+// Extracts packets from a serial line's bytes, in pieces of any size. An invalid frame gives an
+// empty packet, to be counted, except the first, whose beginning may be missing.
 class ProbeFrames {
  public:
   void take(std::span<const std::byte> bytes, const std::function<void(ProbePacket)>& on_packet);

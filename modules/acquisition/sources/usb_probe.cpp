@@ -18,11 +18,11 @@ constexpr std::uint8_t kDescribe = 1, kStream = 2;
 constexpr unsigned kAnswer = 500, kWait = 100; // [ms]
 constexpr double kSilence = 2;                 // [s]
 constexpr double kMended = 7;                  // [s]: the kernel may take 5 to clear a halt
-constexpr double kTogether = 0.01;             // [s]: packets are read in lots of this length
-constexpr std::size_t kMostTogether = 16;
+constexpr double kTogether = 0.01;             // [s]: packets of this time are read in one transfer
+constexpr std::size_t kMaxTogether = 16;
 
 const char* const kUndescribed =
-    "does not describe itself as docs/usb_protocol.md asks: load firmware of this version";
+    "does not send the description of docs/usb_protocol.md: load firmware of this version";
 
 [[noreturn]] void fail(const std::string& name, const std::string& cause) {
   throw DeviceError("the probe " + name + " " + cause);
@@ -35,12 +35,17 @@ void claim(UsbTransport& usb, const std::string& name) {
 }
 
 template <class Take> void askParts(UsbTransport& usb, const std::string& name, const Take& take) {
-  for (std::uint16_t part = 0; part < kProbeParts; ++part) {
+  std::size_t parts = kProbeChannels + 1; // known better once one has come
+  for (std::uint16_t part = 0; part < parts; ++part) {
     std::array<std::byte, kProbePacket> packet;
     const UsbCount got = usb.controlIn({kFromProbe, kDescribe, part, 0}, packet, kAnswer);
     if (got.result == UsbResult::gone)
       fail(name, "is gone: it was pulled out, or its hub lost power");
-    if (got.result == UsbResult::ok) take(std::span(packet).first(got.bytes));
+    if (got.result != UsbResult::ok) continue;
+    const ProbePacket answer = std::span(packet).first(got.bytes);
+    const ProbeContent content = parseProbePacket(answer);
+    if (const auto* one = std::get_if<ProbePart>(&content)) parts = one->parts;
+    take(answer);
   }
 }
 
@@ -49,40 +54,40 @@ class UsbProbe final : public ProbeSource {
   UsbProbe(std::unique_ptr<UsbTransport> usb, std::string name, std::function<double()> now)
       : usb_(std::move(usb)), name_(std::move(name)), now_(std::move(now)) {
     claim(*usb_, name_);
-    stream(false); // of a program that was killed
+    stream(false); // if a program that was killed had started it
     discard();
     askParts(*usb_, name_, [this](ProbePacket packet) {
       std::vector<ProbeSample> none;
       decoder_.take(packet, 0, none);
     });
-    if (!decoder_.described()) fail(name_, kUndescribed);
+    if (!decoder_.hasDescription()) fail(name_, kUndescribed);
     const ProbeDescription& probe = decoder_.description();
     together_ = std::clamp<std::size_t>(
         static_cast<std::size_t>(kTogether / (probe.period * probe.samples_per_packet)), 1,
-        kMostTogether);
+        kMaxTogether);
     stream(true);
     heard_ = now_();
   }
   ~UsbProbe() override { stream(false); }
 
-  bool read(std::vector<ProbeSample>& into) override {
+  bool read(std::vector<ProbeSample>& into, std::vector<RateSample>* rates) override {
     for (const std::size_t before = into.size(); into.size() == before;) {
       if (stopped_) return false;
-      std::array<std::byte, kMostTogether * kProbePacket> bytes;
+      std::array<std::byte, kMaxTogether * kProbePacket> bytes;
       const UsbCount got = usb_->read(kIn, std::span(bytes).first(together_ * kProbePacket), kWait);
       const double now = now_();
       if (got.bytes > 0) heard_ = now;
       for (std::size_t at = 0; at < got.bytes; at += kProbePacket)
         decoder_.take(std::span(bytes).subspan(at, std::min(kProbePacket, got.bytes - at)), now,
-                      into);
-      if (into.size() > before) return true; // what came before a fault is given first
+                      into, rates);
+      if (into.size() > before) return true; // data before a fault are returned first
       if (got.result == UsbResult::gone)
         fail(name_, "is gone: it was pulled out, or its hub lost power");
       const bool refused = got.result != UsbResult::ok && got.result != UsbResult::timeout;
       if (now - heard_ > (got.result == UsbResult::stall ? kMended : kSilence))
         fail(name_, refused ? "cannot be read: plug it in again, without a hub"
                             : "has sent nothing for 2 s: plug it in again");
-      // What is lost while an endpoint that stalled is mended is missed by its number.
+      // Packets lost while a stalled endpoint is cleared are detected by their numbers.
       if (refused) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return true;
@@ -119,7 +124,7 @@ std::unique_ptr<ProbeSource> makeUsbProbe(std::unique_ptr<UsbTransport> usb, std
 
 ProbeDescription describeProbe(UsbTransport& usb, const std::string& name) {
   claim(usb, name);
-  ProbeParts parts;
+  DescriptionAssembler parts;
   bool complete = false;
   try {
     askParts(usb, name, [&](ProbePacket packet) {

@@ -10,12 +10,12 @@
 
 namespace patina {
 
-// Claims interface 0, asks for the description, and lets the stream begin. `name` stands in
-// messages. `now` [s] is when packets arrive; it never runs back. Throws DeviceError.
+// Claims interface 0, requests the description and starts the stream. `name` is for messages. `now`
+// [s] is the clock of arrivals; it never decreases. Throws DeviceError.
 std::unique_ptr<ProbeSource> makeUsbProbe(std::unique_ptr<UsbTransport> usb, std::string name,
                                           std::function<double()> now);
 
-// Claims interface 0 and asks what it is. `name` stands in messages. Throws DeviceError.
+// Claims interface 0 and requests the description. `name` is for messages. Throws DeviceError.
 ProbeDescription describeProbe(UsbTransport& usb, const std::string& name);
 
 } // namespace patina

@@ -17,7 +17,7 @@ std::vector<double> vectorOf(const Eigen::VectorXd& line) {
   return {line.begin(), line.end()};
 }
 
-// Each row through `change`, which keeps its length or makes it another.
+// Applies `change` to each row; it may change the length.
 template <class Change> HeightRows byRows(const HeightRows& rows, const Change& change) {
   HeightRows changed;
   for (Eigen::Index r = 0; r < rows.rows(); ++r) {
@@ -29,7 +29,7 @@ template <class Change> HeightRows byRows(const HeightRows& rows, const Change& 
   return changed;
 }
 
-// One period of it, the first line not repeated.
+// Returns one period; the first line is not repeated.
 HeightRows seamlessBothWays(HeightRows heights, double blend) {
   const auto count = std::max<std::size_t>(
       2, static_cast<std::size_t>(std::lround(blend * static_cast<double>(heights.rows()))));
@@ -41,7 +41,7 @@ HeightRows seamlessBothWays(HeightRows heights, double blend) {
   return heights.topLeftCorner(heights.rows() - 1, heights.cols() - 1);
 }
 
-// 1, cos, sin, cos 2, sin 2 ...
+// Returns the coefficients of 1, cos, sin, cos 2, sin 2 ...
 std::vector<double> termsOf(const FourierSeries& series) {
   std::vector<double> all{series.mean};
   for (std::size_t i = 0; i < series.a.size(); ++i) {
@@ -60,7 +60,7 @@ FourierSeries seriesOfTerms(const Eigen::VectorXd& all) {
   return series;
 }
 
-// What a coefficient counts in a mean square, along one axis: the constant whole, waves by half.
+// Weights of the coefficients in a mean square along one axis: 1 for the constant, 1/2 for waves.
 Eigen::VectorXd weightsOf(Eigen::Index side) {
   Eigen::VectorXd weights = Eigen::VectorXd::Constant(side, std::sqrt(0.5));
   weights[0] = 1;
@@ -73,7 +73,7 @@ FittedPlane fitPlane(const Picture& picture, const PlaneFitOptions& options, Pro
   const Eigen::Index side = picture.width;
   if (picture.width != picture.height)
     throw Error("is " + std::to_string(picture.width) + " by " + std::to_string(picture.height) +
-                " texels; a texture repeats itself alike along x and y: cut it square");
+                " texels; a texture has one period along x and y: cut it square");
   if (side < 4) throw Error("has fewer than 4 texels a side");
   HeightRows heights(side, side);
   for (Eigen::Index y = 0; y < side; ++y)
@@ -123,18 +123,19 @@ FittedPlane fitPlane(const Picture& picture, const PlaneFitOptions& options, Pro
     };
     Eigen::Index rank = std::min<Eigen::Index>(*options.rank, values.size());
     if (rank == 0)
-      for (rank = 1; rank < values.size() && lackingAfter(rank) > options.lacks;) ++rank;
+      for (rank = 1; rank < values.size() && lackingAfter(rank) > options.max_relative_error;)
+        ++rank;
     for (Eigen::Index k = 0; k < rank; ++k) {
       const double root = std::sqrt(values[k]);
       texture.products.push_back({seriesOfTerms(root * svd.v.col(k).cwiseQuotient(weights)),
                                   seriesOfTerms(root * svd.u.col(k).cwiseQuotient(weights))});
     }
     fitted.rank = static_cast<int>(rank);
-    fitted.lacking = lackingAfter(rank);
-    kept *= 1 - fitted.lacking * fitted.lacking;
+    fitted.relative_error = lackingAfter(rank);
+    kept *= 1 - fitted.relative_error * fitted.relative_error;
   }
   fitted.residual = std::sqrt(std::max(0.0, in_all - kept));
-  texture.low = leastHeight(texture);
+  texture.low = minHeight(texture);
   progress.report(1, "low");
   return fitted;
 }

@@ -1,4 +1,4 @@
-// A picture of heights becomes a texture over x and y (A21).
+// Fits a texture over x and y to a height map (A21).
 #pragma once
 
 #include <optional>
@@ -10,28 +10,30 @@
 namespace patina {
 
 struct PlaneFitOptions {
-  double length = 0;  // of the picture's side, a period; blended, a texel more than that [m]
-  double height = 0;  // of white above black [m]
-  int harmonics = 32; // along each axis, at most
-  // Of the side, at its ends: heights there are bent so that the picture repeats itself, along x
-  // and then along y (seamless()). 0: they do.
+  double length = 0;  // side of the picture, one period; if blended, one texel more [m]
+  double height = 0;  // height of white above black [m]
+  int harmonics = 32; // largest number along each axis
+  // Width of the blended zone at the ends, relative to the side, that makes the heights periodic
+  // along x and then along y (seamless()). 0: they are periodic.
   double blend = 0;
-  // The plane as a sum of so many products of a line along x and one along y; 0: of the fewest that
-  // lack no more than `lacks` of the plane's rms. Absent: the plane itself.
+  // Number of products of a line along x and one along y whose sum replaces the plane (low-rank
+  // approximation); 0: the fewest with a relative error of at most `max_relative_error`. Absent:
+  // the plane itself.
   std::optional<int> rank;
-  double lacks = 0.01;
+  double max_relative_error = 0.01;
 };
 
 struct FittedPlane {
   FourierTexture texture;
-  int rank = 0;        // of products; 0: the plane itself
-  double rms = 0;      // of the heights from their mean [m]
-  double residual = 0; // rms of what the texture lacks of the bent heights [m]
-  double lacking = 0;  // of the plane's rms, what the products lack of it
+  int rank = 0;              // number of products; 0: the plane itself
+  double rms = 0;            // heights about their mean [m]
+  double residual = 0;       // rms of the blended heights minus the texture [m]
+  double relative_error = 0; // relative rms error of the low-rank approximation
 };
 
-// picture: its first channel, row 0 at y = 0; square, for a texture has one period along both axes.
-// Throws Error: another shape, fewer than 4 texels, no height anywhere; Cancelled.
+// Uses the picture's first channel, with row 0 at y = 0; it must be square, as a texture has the
+// same period along both axes. Throws Error: another shape, fewer than 4 texels, all heights equal;
+// Cancelled.
 FittedPlane fitPlane(const Picture& picture, const PlaneFitOptions& options, Progress& progress);
 
 } // namespace patina

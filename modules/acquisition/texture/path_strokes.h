@@ -1,4 +1,4 @@
-// The strokes of a path over a mesh: what was drawn over it in one go.
+// Splits a path over a mesh into strokes.
 #pragma once
 
 #include <map>
@@ -14,20 +14,20 @@ struct TimedPoint {
   Vec3 position = Vec3::Zero(); // [m]
 };
 
-// How far along its stretch of contact a sample lies.
-struct StretchPlace {
-  double along = 0; // [m]
+// Arc length of a sample within its contact interval.
+struct IntervalPosition {
+  double arc_length = 0; // [m]
   std::size_t stretch = 0;
 };
-using StretchPlaces = std::map<double, StretchPlace>; // by time [s]
-StretchPlaces placesOf(const std::vector<ScanHeight>& heights);
+using IntervalPositions = std::map<double, IntervalPosition>; // key: time [s]
+IntervalPositions intervalPositions(const std::vector<ScanHeight>& heights);
 
-// One wherever the time between two points is more than five times the median. Where `places` are
-// known, one a stretch: points at other times are left out, as are those at which the probe stood,
-// each stroke says how far along its points lie, and the longest comes first. Points in the order
-// of time, one or more. Throws Error where the way falls within one stretch, or no point is at a
-// time of `places`.
+// Starts a new stroke where the time between two points is more than five times the median. With
+// `places` there is one stroke per contact interval: points at other times and those of a
+// stationary probe are left out, strokes have the points' arc lengths, and the longest one comes
+// first. At least one point, in the order of time. Throws Error if the arc length decreases within
+// an interval, or no point has a time of `places`.
 std::vector<PathOnMesh> strokesOf(const std::vector<TimedPoint>& points,
-                                  const StretchPlaces& places);
+                                  const IntervalPositions& places);
 
 } // namespace patina

@@ -9,32 +9,32 @@
 namespace patina {
 namespace {
 
-constexpr double kShortestGap = 1e-6; // of the mesh's size; what is nearer is one place
-constexpr double kRepeated = 1e-9;    // of the path's size
-constexpr double kFlat = 1e-3;        // of an area: what is pressed together more has no way along
-constexpr double kWindow = 3;         // of a face's radius: where its corners are sought
+constexpr double kShortestGap = 1e-6; // smallest gap over the mesh's size
+constexpr double kRepeated = 1e-9;    // distance of repeated points over the path's size
+constexpr double kFlat = 1e-3;        // smallest area ratio of a face that is not degenerate
+constexpr double kWindow = 3;         // search window about a face, in its radii
 
-bool shareEdge(const PathGround& ground, std::int32_t a, std::int32_t b) {
+bool shareEdge(const MeshQuery& ground, std::int32_t a, std::int32_t b) {
   const auto& across = ground.neighbours.face_neighbours[static_cast<std::size_t>(a)];
   return std::find(across.begin(), across.end(), b) != across.end();
 }
 
-// A path without repeats. Segments count on through the seam where it is closed: segment -1 is then
-// the last one, a length earlier.
+// A path without repeated points. If it is closed, segment numbers continue through the seam:
+// segment -1 is the last one, at negative arc length.
 class Polyline {
  public:
   explicit Polyline(const PathOnMesh& given) {
-    const bool told = !given.along.empty();
-    if (told && given.along.size() != given.points.size())
+    const bool has_arc_length = !given.arc_length.empty();
+    if (has_arc_length && given.arc_length.size() != given.points.size())
       throw Error("the path has " + std::to_string(given.points.size()) + " points and " +
-                  std::to_string(given.along.size()) + " places along it");
+                  std::to_string(given.arc_length.size()) + " places along it");
     Box3 box;
     for (const Vec3& p : given.points) box.extend(p);
     const double least = box.isEmpty() ? 0 : kRepeated * box.sizes().norm();
     for (std::size_t i = 0; i < given.points.size(); ++i) {
       if (!points_.empty() && (given.points[i] - points_.back()).norm() <= least) continue;
       points_.push_back(given.points[i]);
-      if (told) x_.push_back(given.along[i]);
+      if (has_arc_length) x_.push_back(given.arc_length[i]);
     }
     if (!std::is_sorted(x_.begin(), x_.end())) throw Error("the places along the path fall");
     if (points_.size() < 2) throw Error("the path has no length");
@@ -45,18 +45,18 @@ class Polyline {
       along_.push_back(along_.back() + step.norm());
       direction_.push_back(step.normalized());
     }
-    if (!told) x_ = along_;
+    if (!has_arc_length) x_ = along_;
     for (int i = 0; i <= segments(); ++i) {
       const Vec3 sum = direction(closed_ || i > 0 ? i - 1 : 0) +
                        direction(closed_ || i < segments() ? i : i - 1);
-      tangent_.push_back(sum.isZero(1e-9) ? direction(i - 1) // it turns back
+      tangent_.push_back(sum.isZero(1e-9) ? direction(i - 1) // the path reverses
                                           : sum.normalized());
     }
   }
 
-  double length() const { return along_.back(); } // of the way
+  double length() const { return along_.back(); } // arc length
   int segments() const { return static_cast<int>(direction_.size()); }
-  // Segments as triangles without area, for a tree.
+  // Returns the segments as triangles without area, for a tree.
   TriangleMesh asMesh() const {
     TriangleMesh mesh;
     mesh.positions = points_;
@@ -70,15 +70,15 @@ class Polyline {
   }
 
   struct Foot {
-    double way = 0;                // from the beginning [m]
-    double x = 0;                  // how far along that is said to be [m]
-    Vec3 point = Vec3::Zero();     // nearest
-    Vec3 direction = Vec3::Zero(); // of the path there, unit
-    double squared = std::numeric_limits<double>::infinity(); // distance
+    double way = 0;                                           // arc length from the beginning [m]
+    double x = 0;                                             // texture coordinate there [m]
+    Vec3 point = Vec3::Zero();                                // closest point
+    Vec3 direction = Vec3::Zero();                            // unit tangent of the path there
+    double squared = std::numeric_limits<double>::infinity(); // squared distance
     int segment = 0;
-    bool inside = true; // not where the part that was looked at was cut off
+    bool inside = true; // false at a cut end of the searched part
   };
-  // Nearest to p on segments [first, last]; the ends of an open path go on straight.
+  // Returns the closest point to p on segments [first, last]; an open path continues straight.
   Foot foot(const Vec3& p, int first, int last) const {
     Foot best;
     for (int i = first; i <= last; ++i) {
@@ -100,10 +100,10 @@ class Polyline {
     }
     return best;
   }
-  // The same with a direction that turns evenly along each segment, so that x grows evenly round
-  // the outside of a bend, where the nearest point stands still at a corner of the polyline. On or
-  // beside the segment of `near`; that itself where nothing is.
-  Foot evenFoot(const Vec3& p, const Foot& near) const {
+  // The same with tangents interpolated along each segment, so that x grows evenly outside a bend,
+  // where the closest point would rest at a corner of the polyline. Searches the segment of `near`
+  // and its neighbours; returns `near` if nothing is found.
+  Foot smoothFootPoint(const Vec3& p, const Foot& near) const {
     Foot best = near;
     bool found = false;
     for (int i = near.segment - 1; i <= near.segment + 1; ++i) {
@@ -111,10 +111,10 @@ class Polyline {
       const double whole = lengthOf(i);
       const Vec3 from = tangent(i), turn = tangent(i + 1) - from, q = p - point(i),
                  e = whole * direction(i);
-      // (q - s e) . (from + s turn) = 0, 0 <= s <= 1; on the path's end segments also beyond.
+      // Solves (q - s e) . (from + s turn) = 0, 0 <= s <= 1, or beyond on end segments.
       const double c = q.dot(from), b = q.dot(turn) - e.dot(from), a = -e.dot(turn);
       const double root = std::sqrt(std::max(0.0, b * b - 4 * a * c));
-      const double s = 2 * c / (-b + std::copysign(root, -b)); // the root that a straight has
+      const double s = 2 * c / (-b + std::copysign(root, -b)); // the root of a straight segment
       if (b * b < 4 * a * c || !std::isfinite(s)) continue;
       if (s < -kOnEnd || s > 1 + kOnEnd) continue;
       const Vec3 at = point(i) + s * e;
@@ -129,7 +129,7 @@ class Polyline {
 
  private:
   static constexpr double kOnEnd = 1e-12;
-  std::size_t at(int i) const { // of segment i, within the list
+  std::size_t at(int i) const { // index of segment i in the list
     const int n = segments();
     return static_cast<std::size_t>(((i % n) + n) % n);
   }
@@ -146,15 +146,15 @@ class Polyline {
     return along_[k] + length() * (i - static_cast<int>(k)) / segments();
   }
 
-  // A share of segment i, or beyond it as it goes on there.
+  // Returns x at a share of segment i; extrapolates beyond it.
   double xAt(int i, double share) const {
     const auto k = at(i);
     const double whole = x_.back() - x_.front();
     return x_[k] + share * (x_[k + 1] - x_[k]) + whole * (i - static_cast<int>(k)) / segments();
   }
 
-  std::vector<Vec3> points_, direction_, tangent_; // tangents: at points
-  std::vector<double> along_, x_;                  // of points: the way, and what it counts as
+  std::vector<Vec3> points_, direction_, tangent_; // tangents at the points
+  std::vector<double> along_, x_; // arc length and texture coordinate of the points
   bool closed_ = false;
 };
 
@@ -166,14 +166,14 @@ struct Judged {
   double stretch = 0; // along x
 };
 
-// The larger of a matrix's two singular values.
-double mostStretchOf(const Eigen::Matrix2d& m) {
+// Returns the larger singular value of a matrix.
+double maxStretchOf(const Eigen::Matrix2d& m) {
   return 0.5 * (std::hypot(m(0, 0) + m(1, 1), m(1, 0) - m(0, 1)) +
                 std::hypot(m(0, 0) - m(1, 1), m(1, 0) + m(0, 1)));
 }
 
-Judged judge(const PathGround& ground, std::int32_t f, const Polyline& path, double nearest,
-             double most_stretch) {
+Judged judge(const MeshQuery& ground, std::int32_t f, const Polyline& path, double nearest,
+             double max_stretch) {
   Judged judged;
   judged.face.face = f;
   const auto face = static_cast<std::size_t>(f);
@@ -186,20 +186,20 @@ Judged judge(const PathGround& ground, std::int32_t f, const Polyline& path, dou
   const int first = path.segmentAt(nearest - kWindow * radius),
             last = path.segmentAt(nearest + kWindow * radius);
   for (std::size_t k = 0; k < 3; ++k) {
-    const Polyline::Foot foot = path.evenFoot(corner[k], path.foot(corner[k], first, last));
+    const Polyline::Foot foot = path.smoothFootPoint(corner[k], path.foot(corner[k], first, last));
     if (!foot.inside) judged.verdict = Verdict::ambiguous;
     const Vec3 aside = corner[k] - foot.point;
     const double side = foot.direction.cross(aside).dot(normal);
-    judged.face.at[k] = {foot.x, std::copysign(std::sqrt(foot.squared), side)};
+    judged.face.coords[k] = {foot.x, std::copysign(std::sqrt(foot.squared), side)};
   }
   if (judged.verdict != Verdict::kept) return judged;
-  // From the way over the face, in a frame of its plane, to (x, y).
+  // Map from arc length over the face, in a frame of its plane, to (x, y).
   const Vec3 u = (corner[1] - corner[0]).normalized(), v = normal.cross(u);
   Eigen::Matrix2d way, grown;
   for (int k = 0; k < 2; ++k) {
     const Vec3 edge = corner[static_cast<std::size_t>(k + 1)] - corner[0];
     way.col(k) = Vec2(edge.dot(u), edge.dot(v));
-    grown.col(k) = judged.face.at[static_cast<std::size_t>(k + 1)] - judged.face.at[0];
+    grown.col(k) = judged.face.coords[static_cast<std::size_t>(k + 1)] - judged.face.coords[0];
   }
   if (!(way.determinant() > 0)) {
     judged.verdict = Verdict::ambiguous; // no area
@@ -209,14 +209,14 @@ Judged judge(const PathGround& ground, std::int32_t f, const Polyline& path, dou
   judged.stretch = map.row(0).norm();
   if (!(map.determinant() > kFlat))
     judged.verdict = Verdict::folded;
-  else if (mostStretchOf(map) > most_stretch)
+  else if (maxStretchOf(map) > max_stretch)
     judged.verdict = Verdict::stretched;
   return judged;
 }
 
 } // namespace
 
-std::vector<std::int32_t> facesUnder(const PathGround& ground, const std::vector<Vec3>& path) {
+std::vector<std::int32_t> facesUnder(const MeshQuery& ground, const std::vector<Vec3>& path) {
   const double shortest = kShortestGap * bounds(ground.mesh).sizes().norm();
   std::vector<std::int32_t> faces;
   struct Place {
@@ -250,9 +250,8 @@ std::vector<std::int32_t> facesUnder(const PathGround& ground, const std::vector
   return faces;
 }
 
-std::vector<std::int32_t> withRings(const PathGround& ground,
-                                    const std::vector<std::int32_t>& faces, int rings,
-                                    Neighbours neighbours) {
+std::vector<std::int32_t> withRings(const MeshQuery& ground, const std::vector<std::int32_t>& faces,
+                                    int rings, Neighbours neighbours) {
   const Adjacency& near = ground.neighbours;
   std::vector<char> taken(ground.mesh.triangles.size(), 0);
   std::vector<std::int32_t> all, edge = faces;
@@ -282,13 +281,13 @@ std::vector<std::int32_t> withRings(const PathGround& ground,
   return all;
 }
 
-PathCoordinates pathCoordinates(const PathGround& ground, const std::vector<std::int32_t>& faces,
+PathCoordinates pathCoordinates(const MeshQuery& ground, const std::vector<std::int32_t>& faces,
                                 const PathOnMesh& given, const CoordinateOptions& options) {
   const Polyline path(given);
   const TriangleTree segments(path.asMesh());
   PathCoordinates found;
   found.length = path.length();
-  found.least = std::numeric_limits<double>::infinity();
+  found.min_stretch = std::numeric_limits<double>::infinity();
   std::int32_t warm = -1;
   for (const std::int32_t f : faces) {
     const auto face = static_cast<std::size_t>(f);
@@ -298,7 +297,7 @@ PathCoordinates pathCoordinates(const PathGround& ground, const std::vector<std:
     warm = segments.closestPoint(middle, warm).surface.face;
     const int segment = warm;
     Judged judged =
-        judge(ground, f, path, path.foot(middle, segment, segment).way, options.most_stretch);
+        judge(ground, f, path, path.foot(middle, segment, segment).way, options.max_stretch);
     judged.face.texture = options.texture;
     switch (judged.verdict) {
     case Verdict::folded:
@@ -312,11 +311,11 @@ PathCoordinates pathCoordinates(const PathGround& ground, const std::vector<std:
       break;
     case Verdict::kept:
       found.faces.push_back(judged.face);
-      found.most = std::max(found.most, judged.stretch);
-      found.least = std::min(found.least, judged.stretch);
+      found.max_stretch = std::max(found.max_stretch, judged.stretch);
+      found.min_stretch = std::min(found.min_stretch, judged.stretch);
     }
   }
-  if (found.faces.empty()) found.least = 0;
+  if (found.faces.empty()) found.min_stretch = 0;
   return found;
 }
 

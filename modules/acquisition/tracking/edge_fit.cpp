@@ -9,14 +9,15 @@
 namespace patina {
 namespace {
 
-constexpr double kStep = 0.5;        // across an edge [px]
-constexpr double kLeastContrast = 8; // grey levels across an edge
+constexpr double kStep = 0.5;      // step across an edge [px]
+constexpr double kMinContrast = 8; // grey levels across an edge
 constexpr double kReach = 3, kFarthestReach = 8,
-                 kBlurs = 2.5; // to either side of it [px]; in blurs
+                 // Search range on each side [px]; its largest value; the same in blurs.
+    kBlurs = 2.5;
 
-// What no averaging along an edge removes: pixels, and what is blurred into it from the bits on the
-// other side of a border. Of rendered edges of six cameras and families the latter was, in pixels,
-// .011 .027 .057 .105 .18 .33 where the blur was .2 .25 .3 .35 .4 .5 of the border.
+// Returns the systematic error [px] that averaging along an edge does not remove: pixels, and blur
+// from the code's bits across the border. On rendered edges of six cameras and families the latter
+// was .011 .027 .057 .105 .18 .33 px for a blur of .2 .25 .3 .35 .4 .5 of the border.
 double systematic(double blur, double border) {
   const double share = blur / (0.4 * border);
   return 0.004 + 0.18 * std::pow(share, 4);
@@ -24,12 +25,12 @@ double systematic(double blur, double border) {
 
 struct EdgeLine {
   Vec2 normal, middle, along;
-  double scatter = 0;            // of the points about it [px]
-  double weight = 0, spread = 0; // sums of weights, and times squared places along it
+  double scatter = 0;            // rms of the points about the line [px]
+  double weight = 0, spread = 0; // sums of weights, and of weighted squared positions
   double blur = 0;               // [px]
-  double floor = 0;              // of its deviation [px]
+  double floor = 0;              // systematic part of the deviation [px]
 
-  // Of its place at a point of it.
+  // Returns the variance of the line's position at a point of it.
   double variance(const Vec2& point) const {
     const double t = along.dot(point - middle);
     return floor * floor + scatter * scatter * (1 / weight + t * t / spread);
@@ -37,13 +38,12 @@ struct EdgeLine {
 };
 
 struct EdgePoint {
-  double at = 0;   // along the normal; the middle of the slopes
-  double rise = 0; // from one end to the other [grey levels]
-  double step = 0; // in the pixel about the middle [grey levels]
+  double at = 0;   // position along the normal, at the middle of the slope
+  double rise = 0; // across the whole edge [grey levels]
+  double step = 0; // across the pixel at the middle [grey levels]
 };
 
-// Where along the normal, from -reach to reach about the middle, it gets bright. Nothing without
-// contrast.
+// Finds the edge along the normal within `reach` of the middle; nullopt without contrast.
 std::optional<EdgePoint> edgeAlong(const GreyFrame& image, const Vec2& middle, const Vec2& normal,
                                    double reach) {
   const int steps = 2 * static_cast<int>(std::lround(reach / kStep));
@@ -60,12 +60,12 @@ std::optional<EdgePoint> edgeAlong(const GreyFrame& image, const Vec2& middle, c
     }
     before = *grey;
   }
-  if (sum < kLeastContrast) return std::nullopt;
+  if (sum < kMinContrast) return std::nullopt;
   const double at = moment / sum;
   return std::abs(at) <= reach ? std::optional(EdgePoint{at, sum, step}) : std::nullopt;
 }
 
-// The deviation of a Gaussian that makes such an edge of a step, without what bilinear grey adds.
+// Returns the deviation of the edge's Gaussian blur, without that of bilinear interpolation.
 double blurOf(double rise, double step, double reach) {
   const double ratio = rise / std::max(step, 1e-3 * rise);
   const auto of = [](double distance, double sigma) {
@@ -79,7 +79,7 @@ double blurOf(double rise, double step, double reach) {
   return std::sqrt(std::max(0.3, low * high - 1 / 6.));
 }
 
-// Robust: what another thing covers does not pull the line.
+// Robust line fit, insensitive to occluded parts of the edge.
 std::optional<EdgeLine> lineOf(const std::vector<Vec2>& points, const Vec2& outwards) {
   std::vector<double> weights(points.size(), 1), sorted(points.size());
   EdgeLine line;
@@ -126,7 +126,7 @@ struct EdgePoints {
   double rise = 0, step = 0; // sums
 };
 
-// Places of the edge between two corners; `again` looks a second time about each one found.
+// Returns points of the edge between two corners; `again` repeats the search about each of them.
 EdgePoints edgePoints(const GreyFrame& image, const Vec2& from, const Vec2& to, double reach,
                       bool again) {
   EdgePoints points;
@@ -151,7 +151,7 @@ EdgePoints edgePoints(const GreyFrame& image, const Vec2& from, const Vec2& to, 
   return points;
 }
 
-using Lines = std::array<EdgeLine, 4>; // from corner i to the next
+using Lines = std::array<EdgeLine, 4>; // corner i to the next
 
 std::optional<Vec2> meeting(const EdgeLine& a, const EdgeLine& b) {
   const double sine = cross(a.along, b.along);
@@ -160,23 +160,23 @@ std::optional<Vec2> meeting(const EdgeLine& a, const EdgeLine& b) {
 }
 
 std::optional<Lines> linesOf(const GreyFrame& image, const Quad& quad, const Camera* lens, int bits,
-                             bool again, double most_reach = kReach) {
+                             bool again, double max_reach = kReach) {
   Lines lines;
   std::array<double, 4> borders{};
   for (std::size_t i = 0; i < 4; ++i) {
     const Vec2 &from = quad[i], &to = quad[(i + 1) % 4];
-    // How wide the black border is across this side, at most: beyond it are the code's bits.
+    // Largest width of the black border across this side; the code's bits follow.
     const Vec2 along = (to - from).normalized(), normal(along.y(), -along.x());
     const double across = std::min(std::abs(normal.dot(quad[(i + 2) % 4] - to)),
                                    std::abs(normal.dot(quad[(i + 3) % 4] - from)));
     const double border = across / bits;
-    const double reach = std::clamp(border / 2, 1., most_reach);
+    const double reach = std::clamp(border / 2, 1., max_reach);
     EdgePoints points = edgePoints(image, from, to, reach, again);
     if (lens) {
-      std::vector<Vec2> straight;
+      std::vector<Vec2> undistorted;
       for (const Vec2& point : points.place)
-        if (const auto place = straightened(*lens, point)) straight.push_back(*place);
-      points.place = std::move(straight);
+        if (const auto place = undistortedPoint(*lens, point)) undistorted.push_back(*place);
+      points.place = std::move(undistorted);
     }
     const auto line = lineOf(points.place, normal);
     if (!line) return std::nullopt;
@@ -184,16 +184,16 @@ std::optional<Lines> linesOf(const GreyFrame& image, const Quad& quad, const Cam
     borders[i] = border;
     if (again) lines[i].blur = blurOf(points.rise, points.step, reach);
   }
-  // A narrow border does not show its blur: it has that of the widest at least.
+  // The blur of a narrow border is not observable: the widest border's is its lower limit.
   const auto widest = std::max_element(borders.begin(), borders.end()) - borders.begin();
   const double blur = lines[static_cast<std::size_t>(widest)].blur;
   for (std::size_t i = 0; i < 4; ++i) {
     lines[i].blur = std::max(lines[i].blur, blur);
     lines[i].floor = systematic(lines[i].blur, borders[i]);
   }
-  // An edge that is cut off on both sides is seen nearer to where it was looked for.
+  // If the search range cuts the edge on both sides, a wider one is searched.
   const double reach = std::min(kBlurs * blur, kFarthestReach);
-  if (again && most_reach == kReach && reach > kReach &&
+  if (again && max_reach == kReach && reach > kReach &&
       borders[static_cast<std::size_t>(widest)] > 2 * kReach)
     return linesOf(image, quad, lens, bits, true, reach);
   return lines;
@@ -221,8 +221,8 @@ std::optional<FittedQuad> fitEdges(const GreyFrame& image, const Quad& quad, con
     const auto corner = meeting(before, after);
     if (!corner) return std::nullopt;
     FittedCorner& out = fitted.corner[i];
-    out.straight = *corner;
-    out.pixel = lens ? bentBack(*lens, *corner) : *corner;
+    out.undistorted = *corner;
+    out.pixel = lens ? distortedPoint(*lens, *corner) : *corner;
     if ((out.pixel - now[i]).squaredNorm() > 4) return std::nullopt;
     out.whiten.row(0) = before.normal / std::sqrt(before.variance(*corner));
     out.whiten.row(1) = after.normal / std::sqrt(after.variance(*corner));

@@ -1,5 +1,6 @@
-// The corners of a dark quadrilateral to hundredths of a pixel: lines fitted to where its edges are
-// steepest (A04). Refinements that look at the corner itself are biased by what lies beside it.
+// Corners of a dark quadrilateral to hundredths of a pixel, as intersections of lines fitted to the
+// steepest points of its edges (A04). Refinement at the corner itself is biased by its
+// surroundings.
 #pragma once
 
 #include <optional>
@@ -9,28 +10,28 @@
 namespace patina {
 
 struct FittedCorner {
-  Vec2 pixel;    // in the picture
-  Vec2 straight; // where it would be without the lens; the same if there is none
-  // To errors of deviation 1: distances to the two lines that meet, each over its deviation.
+  Vec2 pixel;       // position in the picture
+  Vec2 undistorted; // undistorted position; the same without a lens
+  // Whitens errors to a deviation of 1: distances to the two lines, each over its deviation.
   Eigen::Matrix2d whiten;
 };
 
 struct FittedQuad {
-  std::array<FittedCorner, 4> corner; // as those of the quad
-  double roughness = 0;               // of the edges about their lines, rms [px]
+  std::array<FittedCorner, 4> corner; // in the order of the quad's corners
+  double roughness = 0;               // rms of the edge points about their lines [px]
 
   Quad pixels() const {
     return {corner[0].pixel, corner[1].pixel, corner[2].pixel, corner[3].pixel};
   }
 };
 
-// `lens` straightens the edges; without it they are taken for straight. The quad is `bits` wide, of
-// which the outer ones are black: what is nearer to an edge than half of one belongs to it. Nothing
-// where a side is not an edge from dark to bright.
+// `lens` undistorts the edges; nullptr: no distortion. The quad is `bits` wide, with black outer
+// bits: up to half a bit from an edge belongs to it. Returns nullopt if a side is not an edge from
+// dark to bright.
 std::optional<FittedQuad> fitEdges(const GreyFrame& image, const Quad& quad, const Camera* lens,
                                    int bits = 8);
 
-// Grey between pixels; nothing outside of the image.
+// Interpolates grey bilinearly; nullopt outside the image.
 inline std::optional<double> greyAt(const GreyFrame& image, double x, double y) {
   if (!(x >= 0 && y >= 0 && x < image.width - 1 && y < image.height - 1)) return std::nullopt;
   const int u = static_cast<int>(x), v = static_cast<int>(y);

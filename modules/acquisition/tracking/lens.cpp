@@ -16,7 +16,7 @@ Vec2 toPlane(const Camera& camera, const Vec2& p) {
   return {(p.x() - camera.cx) / camera.fx, (p.y() - camera.cy) / camera.fy};
 }
 
-// The projective map of a sensor that is tilted about x and then about y (OpenCV's tau).
+// Returns the homography of a sensor tilted about x and then about y (OpenCV's tau).
 Eigen::Matrix3d tiltOf(double about_x, double about_y) {
   const double cx = std::cos(about_x), sx = std::sin(about_x), cy = std::cos(about_y),
                sy = std::sin(about_y);
@@ -95,12 +95,12 @@ Vec2 pixelOf(const Camera& camera, const Vec3& in_camera) {
   return toPixel(camera, distorted(camera, in_camera.hnormalized()));
 }
 
-std::optional<Vec2> flatOf(const Camera& camera, const Vec2& pixel, const Vec2* start) {
+std::optional<Vec2> normalizedPoint(const Camera& camera, const Vec2& pixel, const Vec2* start) {
   const Vec2 seen = toPlane(camera, pixel);
   Vec2 flat = start ? *start : seen;
   DistortedPoint now = distortedWithJacobian(camera, flat);
   double off = (now.place - seen).norm();
-  // A step is halved where it leads away.
+  // The step is halved until the residual decreases.
   for (int i = 0; i < 100 && off > 1e-13; ++i) {
     Vec2 step = now.jacobian.inverse() * (seen - now.place);
     bool nearer = false;
@@ -122,12 +122,12 @@ std::optional<Vec2> flatOf(const Camera& camera, const Vec2& pixel, const Vec2* 
   return flat;
 }
 
-std::optional<Vec2> straightened(const Camera& camera, const Vec2& pixel) {
-  const std::optional<Vec2> flat = flatOf(camera, pixel);
+std::optional<Vec2> undistortedPoint(const Camera& camera, const Vec2& pixel) {
+  const std::optional<Vec2> flat = normalizedPoint(camera, pixel);
   return flat ? std::optional(toPixel(camera, *flat)) : std::nullopt;
 }
 
-Vec2 bentBack(const Camera& camera, const Vec2& straight) {
+Vec2 distortedPoint(const Camera& camera, const Vec2& straight) {
   return toPixel(camera, distorted(camera, toPlane(camera, straight)));
 }
 

@@ -1,16 +1,16 @@
-// Where a camera sees a point, and along which ray it sees a pixel (A04), for every lens model.
+// Projection of points to pixels and of pixels to rays (A04), for every lens model.
 #pragma once
 
 #include <optional>
 
-#include "acquisition/camera.h"
+#include "acquisition/values/camera.h"
 
 namespace patina {
 
-// Pixel of a point of the camera's frame that lies before it.
+// Projects a point of the camera's frame in front of the camera to a pixel.
 Vec2 pixelOf(const Camera& camera, const Vec3& in_camera);
 
-// The lens's part of it: from the plane z = 1 to where a pinhole would have to see it.
+// Distorts a point of the plane z = 1 by the lens model.
 Vec2 distorted(const Camera& camera, const Vec2& flat);
 // The same with its derivative by `flat`.
 struct DistortedPoint {
@@ -19,13 +19,14 @@ struct DistortedPoint {
 };
 DistortedPoint distortedWithJacobian(const Camera& camera, const Vec2& flat);
 
-// Point of the plane z = 1 that the pixel shows, by Newton's method from `start` (else from where a
-// pinhole sees it) to 1e-10; nullopt where there is none: beyond 89 degrees from the axis, and
-// where the lens folds.
-std::optional<Vec2> flatOf(const Camera& camera, const Vec2& pixel, const Vec2* start = nullptr);
+// Returns the point of the plane z = 1 for a pixel, by Newton's method from `start` (default: the
+// pinhole's point) to 1e-10. Returns nullopt if there is none: beyond 89 degrees from the axis, and
+// where the lens model is not invertible.
+std::optional<Vec2> normalizedPoint(const Camera& camera, const Vec2& pixel,
+                                    const Vec2* start = nullptr);
 
-// Where the pixel would be without the lens, and back.
-std::optional<Vec2> straightened(const Camera& camera, const Vec2& pixel);
-Vec2 bentBack(const Camera& camera, const Vec2& straight);
+// Remove the distortion from a pixel, and add it.
+std::optional<Vec2> undistortedPoint(const Camera& camera, const Vec2& pixel);
+Vec2 distortedPoint(const Camera& camera, const Vec2& straight);
 
 } // namespace patina

@@ -5,15 +5,15 @@
 #include <mutex>
 #include <numeric>
 
+#include "acquisition/loaded/vision_library.h"
 #include "acquisition/tracking/edge_fit.h"
-#include "acquisition/vision_library.h"
 #include "core/decompose.h"
 #include "core/error.h"
 
 namespace patina {
 namespace {
 
-// A quarter turn of a code: what was the top is on the right.
+// Rotates a code by a quarter turn: its top becomes the right side.
 std::uint64_t turned(std::uint64_t code, int side) {
   std::uint64_t out = 0;
   for (int y = 0; y < side; ++y)
@@ -24,17 +24,17 @@ std::uint64_t turned(std::uint64_t code, int side) {
   return out;
 }
 
-std::array<std::uint64_t, 4> turnsOf(std::uint64_t code, int side) {
+std::array<std::uint64_t, 4> rotationsOf(std::uint64_t code, int side) {
   std::array<std::uint64_t, 4> turns{code};
   for (std::size_t i = 1; i < 4; ++i) turns[i] = turned(turns[i - 1], side);
   return turns;
 }
 
-// Three fifths of what could be mended: two codes, or two turns of one, differ in so many bits.
+// Returns three fifths of the bits that the family's least Hamming distance could correct.
 int correctable(const MarkerFamily& family) {
   int least = family.side * family.side;
   for (std::size_t i = 0; i < family.code.size(); ++i) {
-    const auto turns = turnsOf(family.code[i], family.side);
+    const auto turns = rotationsOf(family.code[i], family.side);
     for (std::size_t turn = 0; turn < 4; ++turn)
       for (std::size_t j = 0; j <= i; ++j)
         if (turn || j < i) least = std::min(least, std::popcount(turns[turn] ^ family.code[j]));
@@ -42,7 +42,7 @@ int correctable(const MarkerFamily& family) {
   return (least - 1) / 2 * 3 / 5;
 }
 
-// A plane of grey over the marker, by least squares.
+// Least-squares plane of grey over the marker.
 struct Shade {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Vec3 sums = Vec3::Zero(), plane = Vec3::Zero();
@@ -60,12 +60,11 @@ struct Shade {
   double at(double x, double y) const { return plane.dot(Vec3(x, y, 1)); }
 };
 
-// Grey of all cells, the black border and one more ring around it; not a number outside of the
-// image.
+// Returns the grey of all cells, with the black border and one more ring; NaN outside the image.
 Eigen::MatrixXd cellsOf(const GreyFrame& image, const Quad& quad, int side) {
   const int all = side + 4;
   const double cell = 1. / (side + 2);
-  const Eigen::Matrix3d map = squareTo(quad);
+  const Eigen::Matrix3d map = homographyTo(quad);
   Eigen::MatrixXd grey(all, all);
   for (int y = 0; y < all; ++y)
     for (int x = 0; x < all; ++x) {
@@ -81,7 +80,7 @@ Eigen::MatrixXd cellsOf(const GreyFrame& image, const Quad& quad, int side) {
   return grey;
 }
 
-// Cells of a few pixels carry their neighbours' grey, too.
+// Removes the neighbours' blur from cells of a few pixels.
 void sharpen(Eigen::MatrixXd& grey) {
   const Eigen::MatrixXd from = grey;
   for (Eigen::Index y = 1; y + 1 < grey.rows(); ++y)
@@ -94,7 +93,7 @@ void sharpen(Eigen::MatrixXd& grey) {
 
 } // namespace
 
-Eigen::Matrix3d squareTo(const Quad& q) {
+Eigen::Matrix3d homographyTo(const Quad& q) {
   const Vec2 a = q[1] - q[2], b = q[3] - q[2], c = q[0] - q[1] + q[2] - q[3];
   const double det = cross(a, b), g = cross(c, b) / det, h = cross(a, c) / det;
   Eigen::Matrix3d m;
@@ -113,14 +112,14 @@ const MarkerFamily& markerFamily(const std::string& name) {
   MarkerFamily family;
   if (const std::string cause = visionLibrary().family(name, family); !cause.empty())
     throw Error(cause);
-  family.correctable = correctable(family);
+  family.max_correction = correctable(family);
   return known.emplace(name, std::move(family)).first->second;
 }
 
 CodeBook::CodeBook(const MarkerFamily& family, const std::vector<int>& ids)
     : family_(&family), ids_(ids) {
   for (const int id : ids)
-    turned_.push_back(turnsOf(family.code.at(static_cast<std::size_t>(id)), family.side));
+    turned_.push_back(rotationsOf(family.code.at(static_cast<std::size_t>(id)), family.side));
 }
 
 CodeBook::CodeBook(const MarkerFamily& family)
@@ -135,7 +134,7 @@ std::optional<CodeBook::Match> CodeBook::match(std::uint64_t code) const {
   for (std::size_t i = 0; i < ids_.size(); ++i)
     for (int turn = 0; turn < 4; ++turn) {
       const int wrong = std::popcount(code ^ turned_[i][static_cast<std::size_t>(turn)]);
-      if (wrong <= (best ? best->wrong - 1 : family_->correctable))
+      if (wrong <= (best ? best->hamming_distance - 1 : family_->max_correction))
         best = Match{ids_[i], turn, wrong};
     }
   return best;

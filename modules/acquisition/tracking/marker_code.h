@@ -1,4 +1,4 @@
-// What is written in a marker.
+// Codes of markers, and how they are read. The list of families is in vision/vision.cpp.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace patina {
 
-// Of the name in scan folders: "4x4_50", "apriltag_36h11" and what else OpenCV knows, which is
-// loaded for it; each is kept. Throws Error naming those that there are.
+// Returns a family by its name in scan folders: "4x4_50", "apriltag_36h11" or another one of
+// OpenCV, which is loaded for it and kept. Throws Error with the known names.
 const MarkerFamily& markerFamily(const std::string& name);
 
-// Codes of a family that are looked for, each in its four turns.
+// Codes of a family to search for, each in its four rotations.
 class CodeBook {
  public:
   CodeBook(const MarkerFamily& family, const std::vector<int>& ids);
@@ -20,8 +20,8 @@ class CodeBook {
 
   struct Match {
     int id = 0;
-    int turn = 0; // corner 0 of the marker is this corner of the quad
-    int wrong = 0;
+    int quarter_turns = 0; // quarter turns: corner 0 of the marker is this corner of the quad
+    int hamming_distance = 0;
   };
   std::optional<Match> match(std::uint64_t code) const;
   const MarkerFamily& family() const { return *family_; }
@@ -32,10 +32,10 @@ class CodeBook {
   std::vector<std::array<std::uint64_t, 4>> turned_;
 };
 
-// From the unit square, (0, 0) to corner 0 and (1, 0) to corner 1, to the quad.
-Eigen::Matrix3d squareTo(const Quad& quad);
+// Returns the homography from the unit square, (0, 0) at corner 0, (1, 0) at corner 1.
+Eigen::Matrix3d homographyTo(const Quad& quad);
 
-// The code inside of a quad whose border is black; `quad` in the image's pixels.
+// Reads the code inside a quad with a black border; `quad` is in the image's pixels.
 std::optional<CodeBook::Match> readCode(const GreyFrame& image, const Quad& quad,
                                         const CodeBook& book);
 

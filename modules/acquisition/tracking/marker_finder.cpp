@@ -12,12 +12,13 @@ Vec2 middleOf(const SeenMarker& marker) {
   return sum;
 }
 
-// Of two readings of one marker the better stays.
+// Keeps the better of two detections of one marker.
 void keep(std::vector<SeenMarker>& seen, const SeenMarker& marker) {
   for (SeenMarker& other : seen) {
     const double size = (other.corner[0].pixel - other.corner[2].pixel).norm();
     if ((middleOf(other) - middleOf(marker)).norm() > 0.25 * size) continue;
-    if (std::pair(marker.wrong, marker.roughness) < std::pair(other.wrong, other.roughness))
+    if (std::pair(marker.hamming_distance, marker.roughness) <
+        std::pair(other.hamming_distance, other.roughness))
       other = marker;
     return;
   }
@@ -25,9 +26,9 @@ void keep(std::vector<SeenMarker>& seen, const SeenMarker& marker) {
 }
 
 void look(const GreyFrame& image, const std::vector<CodeBook>& books, const Camera* lens,
-          const QuadSearch& search, std::vector<SeenMarker>& seen) {
+          const QuadOptions& search, std::vector<SeenMarker>& seen) {
   for (const Quad& quad : findQuads(image, search)) {
-    constexpr int kBits = 8; // of most families
+    constexpr int kBits = 8; // width in most families
     auto fitted = fitEdges(image, quad, lens, kBits);
     if (!fitted) continue;
     for (const CodeBook& book : books) {
@@ -35,9 +36,10 @@ void look(const GreyFrame& image, const std::vector<CodeBook>& books, const Came
       if (!match) continue;
       if (const int bits = book.family().side + 2; bits != kBits)
         if (const auto closer = fitEdges(image, fitted->pixels(), lens, bits)) fitted = closer;
-      SeenMarker marker{book.family().name, match->id, match->wrong, fitted->corner,
+      SeenMarker marker{book.family().name, match->id, match->hamming_distance, fitted->corner,
                         fitted->roughness};
-      std::rotate(marker.corner.begin(), marker.corner.begin() + match->turn, marker.corner.end());
+      std::rotate(marker.corner.begin(), marker.corner.begin() + match->quarter_turns,
+                  marker.corner.end());
       keep(seen, marker);
       break;
     }
@@ -61,7 +63,8 @@ Vec2 halved(const Vec2& p) {
 }
 
 void lookTwiceAsLarge(const GreyFrame& image, const std::vector<CodeBook>& books,
-                      const Camera* lens, const QuadSearch& search, std::vector<SeenMarker>& seen) {
+                      const Camera* lens, const QuadOptions& search,
+                      std::vector<SeenMarker>& seen) {
   Camera large;
   if (lens) {
     large = *lens;
@@ -73,7 +76,7 @@ void lookTwiceAsLarge(const GreyFrame& image, const std::vector<CodeBook>& books
   for (SeenMarker& marker : more) {
     for (FittedCorner& corner : marker.corner) {
       corner.pixel = halved(corner.pixel);
-      corner.straight = halved(corner.straight);
+      corner.undistorted = halved(corner.undistorted);
       corner.whiten *= 2;
     }
     marker.roughness /= 2;
@@ -89,7 +92,7 @@ std::vector<SeenMarker> findMarkers(const GreyFrame& image, const std::vector<Co
   look(image, books, lens, {}, seen);
   if (!options.thorough) return seen;
   for (const double split : {0.5, 0.35, 0.65}) {
-    QuadSearch search{split, 8};
+    QuadOptions search{split, 8};
     look(image, books, lens, search, seen);
     search.shortest *= 1.5;
     lookTwiceAsLarge(image, books, lens, search, seen);

@@ -1,4 +1,4 @@
-// Markers in a picture (A04).
+// Finds markers in a picture (A04).
 #pragma once
 
 #include "acquisition/tracking/edge_fit.h"
@@ -9,18 +9,17 @@ namespace patina {
 struct SeenMarker {
   std::string family;
   int id = 0;
-  int wrong = 0;                      // bits that were forgiven
-  std::array<FittedCorner, 4> corner; // as the marker has them: top left, then clockwise
-  double roughness = 0;               // of its edges [px]
+  int hamming_distance = 0;           // Hamming distance to the code
+  std::array<FittedCorner, 4> corner; // in the marker's order: top left, then clockwise
+  double roughness = 0;               // roughness of the edges [px]
 };
 
 struct FinderOptions {
-  // Looks with three splits of dark and bright, and at twice the size: small, blurred and crowded
-  // markers, at ten times the cost.
+  // Adds two thresholds and twice the resolution, for small and blurred markers; ten times slower.
   bool thorough = false;
 };
 
-// Each marker once for each place where it is seen. `lens` straightens; see FittedCorner.
+// Returns each marker once per detected place. `lens` undistorts; see FittedCorner.
 std::vector<SeenMarker> findMarkers(const GreyFrame& image, const std::vector<CodeBook>& books,
                                     const Camera* lens, const FinderOptions& options = {});
 

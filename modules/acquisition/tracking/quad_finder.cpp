@@ -12,12 +12,12 @@ namespace {
 
 constexpr int kTile = 4; // [px]
 
-// 1 where it is dark, with a frame of zeros one pixel wide.
+// 1 where the picture is dark, with a border of zeros one pixel wide.
 struct DarkMap {
   int stride;
   std::vector<std::uint8_t> value;
 };
-constexpr std::uint8_t kWalked = 2; // the crack on the left of a pixel has been walked along
+constexpr std::uint8_t kTraced = 2; // the left side of the pixel was traced
 
 struct Tiles {
   int columns, rows;
@@ -52,8 +52,8 @@ Tiles tilesOf(const GreyFrame& image) {
   return tiles;
 }
 
-// Below which a pixel of a tile is dark, from its neighbours too; 0 where contrast is missing.
-std::vector<std::uint8_t> thresholds(const Tiles& tiles, const QuadSearch& search) {
+// Returns the threshold of each tile, from its neighbourhood; 0 without contrast.
+std::vector<std::uint8_t> thresholds(const Tiles& tiles, const QuadOptions& search) {
   std::vector<std::uint8_t> threshold(tiles.low.size());
   for (int y = 0; y < tiles.rows; ++y)
     for (int x = 0; x < tiles.columns; ++x) {
@@ -66,16 +66,16 @@ std::vector<std::uint8_t> thresholds(const Tiles& tiles, const QuadSearch& searc
         }
       if (high - low >= search.contrast)
         threshold[index(y * tiles.columns + x)] =
-            static_cast<std::uint8_t>(std::ceil(low + search.split * (high - low)));
+            static_cast<std::uint8_t>(std::ceil(low + search.threshold_fraction * (high - low)));
     }
   return threshold;
 }
 
-DarkMap darkMap(const GreyFrame& image, const QuadSearch& search) {
+DarkMap darkMap(const GreyFrame& image, const QuadOptions& search) {
   const Tiles tiles = tilesOf(image);
   const std::vector<std::uint8_t> threshold = thresholds(tiles, search);
   DarkMap map{image.width + 2, {}};
-  map.value.resize(index(map.stride) * index(image.height + 2) + 8); // read eight at a time
+  map.value.resize(index(map.stride) * index(image.height + 2) + 8); // eight bytes a read
   std::vector<std::uint8_t> line(index(tiles.columns * kTile));
   for (int y = 0; y < image.height; ++y) {
     if (y % kTile == 0)
@@ -89,9 +89,9 @@ DarkMap darkMap(const GreyFrame& image, const QuadSearch& search) {
   return map;
 }
 
-// Of a pixel, standard deviation [grey levels]: the median bend of three neighbours in a row, which
-// edges and slopes hardly move.
-double noiseOf(const GreyFrame& image) {
+// Returns the noise of a pixel, a standard deviation [grey levels], from the median second
+// difference in rows, which edges and slopes hardly change.
+double pixelNoise(const GreyFrame& image) {
   std::array<std::size_t, 511> count{};
   std::size_t all = 0;
   for (int y = 0; y < image.height; y += 4) {
@@ -104,7 +104,7 @@ double noiseOf(const GreyFrame& image) {
   return static_cast<double>(bend) / (0.6745 * std::sqrt(6.));
 }
 
-// Those at the border of the picture stay.
+// Filters with a 3 x 3 mean, except at the picture's border.
 GreyFrame meansOfNine(const GreyFrame& image) {
   GreyFrame out = image;
   const auto width = static_cast<std::size_t>(image.width);
@@ -124,29 +124,28 @@ struct Point {
   int x, y;
 };
 
-// Corners of pixels along the border, the dark on the right hand; twice the area that it goes round
-// is negative for holes.
-struct Border {
+// Pixel corners along a contour, dark on the right; twice the area, negative for holes.
+struct Contour {
   std::vector<Point> points;
   std::int64_t area = 0;
 };
 
-// Begins upwards along the left side of the pixel (x, y). Dark pixels that touch by a corner are
-// apart.
-void walk(DarkMap& map, int x, int y, Border& border) {
+// Traces a contour along the sides of its pixels, starting upwards along the left side of pixel
+// (x, y). Dark pixels that only share a corner are separate.
+void traceContour(DarkMap& map, int x, int y, Contour& contour) {
   static constexpr int kX[] = {0, 1, 0, -1}, kY[] = {-1, 0, 1, 0};
   std::uint8_t* const base = map.value.data();
   const int stride = map.stride;
-  // Of the four pixels about a corner of pixels, seen along each way: ahead on the left, the right.
+  // Offsets of the pixels ahead on the left and on the right, for each direction.
   const int left[] = {-stride - 1, -stride, 0, -1}, right[] = {-stride, 0, -1, -stride - 1};
-  border.points.clear();
-  border.area = 0;
+  contour.points.clear();
+  contour.area = 0;
   int px = x, py = y + 1, way = 0;
   do {
-    if (way == 0) base[(py - 1) * stride + px] |= kWalked;
-    border.points.push_back({px, py});
+    if (way == 0) base[(py - 1) * stride + px] |= kTraced;
+    contour.points.push_back({px, py});
     const int nx = px + kX[way], ny = py + kY[way];
-    border.area += static_cast<std::int64_t>(px) * ny - static_cast<std::int64_t>(nx) * py;
+    contour.area += static_cast<std::int64_t>(px) * ny - static_cast<std::int64_t>(nx) * py;
     px = nx;
     py = ny;
     const std::uint8_t* at = base + py * stride + px;
@@ -167,8 +166,7 @@ std::optional<Vec2> crossing(const Line& a, const Line& b) {
   return a.middle + cross(b.middle - a.middle, b.direction) / sine * a.direction;
 }
 
-// The four corners that a border has if it is a quadrilateral's: each is the farthest from
-// something.
+// Returns a contour's four corners if it is a quadrilateral, each a farthest point.
 std::optional<std::array<std::size_t, 4>> cornersOf(const std::vector<Point>& points) {
   const auto farthest = [&](const auto& distance) {
     std::size_t best = 0;
@@ -196,7 +194,7 @@ std::optional<std::array<std::size_t, 4>> cornersOf(const std::vector<Point>& po
   corner[2] = farthest([&](const Point& p) { return std::abs(side(a, b, p)); }).first;
   Point p1 = b, p2 = points[corner[2]];
   if (side(a, p1, p2) < 0) std::swap(p1, p2);
-  // How far outside the triangle, whose inside is on the positive side of each edge.
+  // Distance outside the triangle, whose inside is on the positive side of each edge.
   const auto [last, out] = farthest([&](const Point& p) {
     return -std::min({side(a, p1, p), side(p1, p2, p), side(p2, a, p)});
   });
@@ -206,7 +204,7 @@ std::optional<std::array<std::size_t, 4>> cornersOf(const std::vector<Point>& po
   return corner;
 }
 
-// Through the middle of a run of a border.
+// Fits a line to the middle part of a contour's side.
 std::optional<Line> lineThrough(const std::vector<Point>& points, std::size_t from, std::size_t to,
                                 double& misfit) {
   const std::size_t all = points.size(), count = (to + all - from) % all;
@@ -227,17 +225,17 @@ std::optional<Line> lineThrough(const std::vector<Point>& points, std::size_t fr
   return Line{Vec2(origin.x + x, origin.y + y), Vec2(std::cos(angle), std::sin(angle))};
 }
 
-std::optional<Quad> quadOf(const Border& border, const QuadSearch& search) {
-  const auto corner = cornersOf(border.points);
+std::optional<Quad> quadOf(const Contour& contour, const QuadOptions& search) {
+  const auto corner = cornersOf(contour.points);
   if (!corner) return std::nullopt;
   std::array<Line, 4> lines;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t from = (*corner)[i], to = (*corner)[(i + 1) % 4];
     double misfit = 0;
-    const auto line = lineThrough(border.points, from, to, misfit);
+    const auto line = lineThrough(contour.points, from, to, misfit);
     if (!line) return std::nullopt;
-    const double dx = border.points[to].x - border.points[from].x,
-                 dy = border.points[to].y - border.points[from].y;
+    const double dx = contour.points[to].x - contour.points[from].x,
+                 dy = contour.points[to].y - contour.points[from].y;
     if (misfit > 0.7 + 0.03 * std::hypot(dx, dy)) return std::nullopt;
     lines[i] = *line;
   }
@@ -245,7 +243,7 @@ std::optional<Quad> quadOf(const Border& border, const QuadSearch& search) {
   for (std::size_t i = 0; i < 4; ++i) {
     const auto point = crossing(lines[(i + 3) % 4], lines[i]);
     if (!point) return std::nullopt;
-    quad[i] = *point - Vec2(1.5, 1.5); // the map's frame, and a corner of pixels is between them
+    quad[i] = *point - Vec2(1.5, 1.5); // map border, and corner of a pixel
   }
   double area = 0;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -253,29 +251,30 @@ std::optional<Quad> quadOf(const Border& border, const QuadSearch& search) {
     if ((q - p).norm() < search.shortest || cross(q - p, r - q) <= 0) return std::nullopt;
     area += cross(p, q);
   }
-  const double walked = static_cast<double>(border.area);
+  const double walked = static_cast<double>(contour.area);
   return walked > 0.75 * area && walked < 1.3 * area ? std::optional(quad) : std::nullopt;
 }
 
 } // namespace
 
-std::vector<Quad> findQuads(const GreyFrame& original, const QuadSearch& search) {
-  // Noise alone spreads over six deviations where a threshold looks; its thousand spots each would
-  // be walked around. Where no marker's contrast would be beyond that, means of nine are looked at.
-  constexpr double kSpread = 7, kMostContrast = 64; // in deviations; that no marker is lost
-  double noise = noiseOf(original);
+std::vector<Quad> findQuads(const GreyFrame& original, const QuadOptions& search) {
+  // Thresholds see a range of about six deviations of pure noise, whose spots would all be traced.
+  // If this exceeds the contrast of a marker, the picture is smoothed first.
+  // In deviations; upper limit, so that no marker is lost.
+  constexpr double kSpread = 7, kMaxContrast = 64;
+  double noise = pixelNoise(original);
   GreyFrame means;
-  if (kSpread * noise > kMostContrast) {
+  if (kSpread * noise > kMaxContrast) {
     means = meansOfNine(original);
     noise /= 3;
   }
   const GreyFrame& image = means.pixel.empty() ? original : means;
-  QuadSearch quieted = search;
+  QuadOptions quieted = search;
   quieted.contrast =
-      std::max(search.contrast, static_cast<int>(std::min(kMostContrast, kSpread * noise)));
+      std::max(search.contrast, static_cast<int>(std::min(kMaxContrast, kSpread * noise)));
   DarkMap map = darkMap(image, quieted);
   std::vector<Quad> quads;
-  Border border;
+  Contour contour;
   const std::size_t least = static_cast<std::size_t>(4 * search.shortest);
   for (int y = 1; y <= image.height; ++y) {
     const std::uint8_t* row = map.value.data() + index(y * map.stride);
@@ -287,12 +286,12 @@ std::vector<Quad> findQuads(const GreyFrame& original, const QuadSearch& search)
       for (; starts; starts &= starts - 1) {
         const int at = x + std::countr_zero(starts) / 8;
         if (at > image.width) break;
-        if (row[at] & kWalked) continue; // by a walk since
-        walk(map, at, y, border);
-        const double n = static_cast<double>(border.points.size());
-        if (border.points.size() < least || static_cast<double>(border.area) < 0.02 * n * n)
+        if (row[at] & kTraced) continue; // already traced
+        traceContour(map, at, y, contour);
+        const double n = static_cast<double>(contour.points.size());
+        if (contour.points.size() < least || static_cast<double>(contour.area) < 0.02 * n * n)
           continue;
-        if (const auto quad = quadOf(border, search)) quads.push_back(*quad);
+        if (const auto quad = quadOf(contour, search)) quads.push_back(*quad);
       }
     }
   }

@@ -1,19 +1,18 @@
-// Dark quadrilaterals on brighter ground: what may be a marker or a square of a board.
+// Dark quadrilaterals on brighter ground: candidates for markers and squares of a board.
 #pragma once
 
-#include "acquisition/camera.h"
+#include "acquisition/values/camera.h"
 
 namespace patina {
 
-// Clockwise as one sees it, to about half a pixel.
-using Quad = std::array<Vec2, 4>;
+using Quad = std::array<Vec2, 4>; // clockwise in the picture, to about half a pixel
 
-struct QuadSearch {
-  double split = 0.5; // of the way from the darkest to the brightest near by: what is below is dark
-  int contrast = 20;  // grey levels; where there is less, nothing is dark
-  double shortest = 8; // side [px]
+struct QuadOptions {
+  double threshold_fraction = 0.5; // threshold between the local minimum (0) and maximum (1)
+  int contrast = 20;               // smallest contrast of a dark pixel [grey levels]
+  double shortest = 8;             // shortest side [px]
 };
 
-std::vector<Quad> findQuads(const GreyFrame& image, const QuadSearch& search = {});
+std::vector<Quad> findQuads(const GreyFrame& image, const QuadOptions& search = {});
 
 } // namespace patina

@@ -4,28 +4,95 @@
 #include <cmath>
 #include <optional>
 
-#include "acquisition/tracking/face_likeness.h"
+#include "acquisition/tracking/edge_fit.h"
+#include "acquisition/tracking/lens.h"
+#include "acquisition/tracking/marker_code.h"
+#include "acquisition/tracking/marker_residual.h"
+#include "acquisition/values/camera.h"
 #include "core/decompose.h"
 
 namespace patina {
 namespace {
 
+// Likelihood of a pose by the appearance of all faces, even those too small to decode (A04).
+
+constexpr double kMinWide = 2;    // smallest width of a compared marker [px]
+constexpr double kBlurred = 4;    // number of pixels per independent sample, by blur
+constexpr double kSharpest = 0.9; // largest correlation counted; beyond it light and print matter
+
+double areaOf(const Quad& q) {
+  return 0.5 * (cross(q[1] - q[0], q[2] - q[0]) + cross(q[2] - q[0], q[3] - q[0]));
+}
+
+// Returns the printed color, with a white ring around the black border.
+bool isWhite(const MarkerFamily& family, std::uint64_t code, int x, int y) {
+  const int all = family.side + 4, ring = std::min({x, y, all - 1 - x, all - 1 - y});
+  if (ring < 2) return ring == 0;
+  const int bit = (y - 2) * family.side + x - 2;
+  return code >> (family.side * family.side - 1 - bit) & 1;
+}
+
+double likenessOf(const GreyFrame& image, const RigMarker& marker, const Camera& camera,
+                  const Pose& pose) {
+  Quad quad;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 p = pose * marker.corners()[i];
+    if (!(p.z() > 1e-6)) return 0;
+    quad[i] = pixelOf(camera, p);
+  }
+  // The corners are clockwise unless the back of the marker is seen.
+  const double area = areaOf(quad);
+  const double longest = std::max((quad[2] - quad[0]).norm(), (quad[3] - quad[1]).norm());
+  if (!(area > kMinWide * longest)) return 0;
+  const MarkerFamily& family = markerFamily(marker.family);
+  const int all = family.side + 4;
+  const double cell = marker.size / (family.side + 2);
+  double n = 0, print = 0, grey = 0, both = 0, prints = 0, greys = 0;
+  for (int y = 0; y < all; ++y)
+    for (int x = 0; x < all; ++x) {
+      const Vec3 place(-marker.size / 2 + (x - 0.5) * cell, marker.size / 2 - (y - 0.5) * cell, 0);
+      const Vec3 p = pose * (marker.probe_from_marker * place);
+      if (!(p.z() > 1e-6)) return 0;
+      const Vec2 pixel = pixelOf(camera, p);
+      const auto g = greyAt(image, pixel.x(), pixel.y());
+      if (!g) return 0; // partly outside the picture
+      const double w =
+          isWhite(family, family.code[static_cast<std::size_t>(marker.id)], x, y) ? 1 : 0;
+      n += 1, print += w, grey += *g, both += w * *g, prints += w * w, greys += *g * *g;
+    }
+  const double spread = (prints - print * print / n) * (greys - grey * grey / n);
+  if (!(spread > 0)) return 0;
+  const double correlation =
+      std::clamp((both - print * grey / n) / std::sqrt(spread), 0., kSharpest);
+  // Log likelihood ratio of a regression over this number of independent pixels.
+  return -0.5 * std::min(n, area / kBlurred) * std::log(1 - correlation * correlation);
+}
+
+// Returns the log likelihood ratio of the picture between the rig in this pose and no marker at
+// all; 0 if no marker would be visible.
+double appearanceLogRatio(const GreyFrame& image, const std::vector<RigMarker>& rig,
+                          const Camera& camera, const Pose& camera_from_probe) {
+  double sum = 0;
+  for (const RigMarker& marker : rig) sum += likenessOf(image, marker, camera, camera_from_probe);
+  return sum;
+}
+
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kFar = 10;   // by how much a marker may miss a first guess [px]
-constexpr double kMisfit = 2; // rms that no good rig leaves [px]
-constexpr double kPrior = 8;  // for how many residuals the edges' own deviations count
-constexpr double kDoubt = 12; // squared residuals by which another pose must be worse
-// Beyond the first nobody asks how the faces look; what is systematic about edges counts as the
-// other.
-constexpr double kNoDoubt = 150, kMostTrust = 24;
-constexpr double kContradicts = 6; // times the spread without it that a wrong marker makes
-constexpr double kSame = 0.05;     // poses nearer to one another are one [rad]
-constexpr double kOwnTurn = 0.3;   // the most that a hand turns from frame to frame [rad]
+constexpr double kFar = 10;           // largest error of a marker at an initial guess [px]
+constexpr double kMisfit = 2;         // largest rms of a correct rig [px]
+constexpr double kPriorResiduals = 8; // weight of the edges' own deviations, in residuals
+constexpr double kMinCostGap = 12;    // smallest cost gap to another pose
+// Cost gap above which the faces' appearance is not needed, and the largest evidence of the edges
+// otherwise, because of their systematic errors.
+constexpr double kCertainGap = 150, kMaxEvidence = 24;
+constexpr double kContradicts = 6; // spread ratio that identifies a wrong marker
+constexpr double kSame = 0.05;     // smaller rotations are the same pose [rad]
+constexpr double kOwnTurn = 0.3;   // largest rotation of a hand between frames [rad]
 
-// A seen marker and where the rig has it.
-struct Sight {
+// A detected marker and its corners on the rig.
+struct MarkerObservation {
   const SeenMarker* seen;
   std::array<Vec3, 4> corner; // in the probe's frame
   const RigMarker* marker;
@@ -35,13 +102,14 @@ Vec2 pinhole(const Camera& camera, const Vec3& p) {
   return {camera.fx * p.x() / p.z() + camera.cx, camera.fy * p.y() / p.z() + camera.cy};
 }
 
-// Mean square of the corners' misses [px^2].
-double missOf(const Sight& sight, const Camera& camera, const Pose& pose) {
+// Returns the mean squared reprojection error of the corners [px^2].
+double reprojectionError(const MarkerObservation& observation, const Camera& camera,
+                         const Pose& pose) {
   double sum = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 p = pose * sight.corner[i];
+    const Vec3 p = pose * observation.corner[i];
     if (!(p.z() > 1e-6)) return 1e12;
-    sum += (pinhole(camera, p) - sight.seen->corner[i].straight).squaredNorm() / 4;
+    sum += (pinhole(camera, p) - observation.seen->corner[i].undistorted).squaredNorm() / 4;
   }
   return sum;
 }
@@ -52,20 +120,20 @@ struct Fit {
   Mat6 normal = Mat6::Zero();
 };
 
-// Residuals of all corners, and what turns and shifts in the camera's frame do to them.
-Fit linearised(const std::vector<Sight>& sights, const Camera& camera, const Pose& pose,
-               Vec6& gradient) {
+// Computes residuals of the corners and their derivatives by motions in the camera's frame.
+Fit linearised(const std::vector<MarkerObservation>& observations, const Camera& camera,
+               const Pose& pose, Vec6& gradient) {
   Fit fit{pose};
   gradient.setZero();
-  for (const Sight& sight : sights)
+  for (const MarkerObservation& observation : observations)
     for (std::size_t i = 0; i < 4; ++i) {
-      const Vec3 arm = pose.linear() * sight.corner[i], p = arm + pose.translation();
+      const Vec3 arm = pose.linear() * observation.corner[i], p = arm + pose.translation();
       if (!(p.z() > 1e-6)) {
         fit.cost = INFINITY;
         return fit;
       }
-      const FittedCorner& corner = sight.seen->corner[i];
-      const Vec2 e = corner.whiten * (pinhole(camera, p) - corner.straight);
+      const FittedCorner& corner = observation.seen->corner[i];
+      const Vec2 e = corner.whiten * (pinhole(camera, p) - corner.undistorted);
       Eigen::Matrix<double, 2, 3> in;
       in << camera.fx / p.z(), 0, -camera.fx * p.x() / (p.z() * p.z()), 0, camera.fy / p.z(),
           -camera.fy * p.y() / (p.z() * p.z());
@@ -80,25 +148,17 @@ Fit linearised(const std::vector<Sight>& sights, const Camera& camera, const Pos
   return fit;
 }
 
-Pose moved(const Pose& pose, const Vec6& step) {
-  Pose out = pose;
-  const Vec3 turn = step.tail<3>();
-  const double angle = turn.norm();
-  if (angle > 0) out.linear() = Eigen::AngleAxisd(angle, turn / angle) * pose.linear();
-  out.translation() += step.head<3>();
-  return out;
-}
-
-// Levenberg and Marquardt.
-Fit refined(const std::vector<Sight>& sights, const Camera& camera, const Pose& start) {
+// Levenberg-Marquardt.
+Fit refined(const std::vector<MarkerObservation>& observations, const Camera& camera,
+            const Pose& start) {
   Vec6 gradient, next_gradient;
-  Fit fit = linearised(sights, camera, start, gradient);
+  Fit fit = linearised(observations, camera, start, gradient);
   double damping = 1e-4;
   for (int i = 0; i < 40 && damping < 1e8; ++i) {
     Mat6 damped = fit.normal;
     damped.diagonal() *= 1 + damping;
     const Vec6 step = -SymmetricSolver(damped).solve(gradient);
-    const Fit next = linearised(sights, camera, moved(fit.pose, step), next_gradient);
+    const Fit next = linearised(observations, camera, movedPose(fit.pose, step), next_gradient);
     if (!(next.cost < fit.cost)) {
       damping *= 10;
       continue;
@@ -112,16 +172,16 @@ Fit refined(const std::vector<Sight>& sights, const Camera& camera, const Pose& 
   return fit;
 }
 
-// Of one marker from its homography; a picture of a flat thing has a second pose that nearly fits,
-// the normal mirrored at the line of sight.
-std::array<Pose, 2> guesses(const Sight& sight, const Camera& camera) {
+// Returns both poses of one marker from its homography. The second solution has the normal mirrored
+// at the line of sight (planar pose ambiguity: Schweighofer & Pinz 2006, Collins & Bartoli 2014).
+std::array<Pose, 2> guesses(const MarkerObservation& observation, const Camera& camera) {
   Quad flat;
   for (std::size_t i = 0; i < 4; ++i) {
-    const Vec2& p = sight.seen->corner[i].straight;
+    const Vec2& p = observation.seen->corner[i].undistorted;
     flat[i] = {(p.x() - camera.cx) / camera.fx, (p.y() - camera.cy) / camera.fy};
   }
-  const Eigen::Matrix3d map = squareTo(flat);
-  const double size = sight.marker->size;
+  const Eigen::Matrix3d map = homographyTo(flat);
+  const double size = observation.marker->size;
   const Vec3 x = map.col(0) / size, y = -map.col(1) / size;
   const double scale = 2 / (x.norm() + y.norm());
   const Vec3 sum = (x.normalized() + y.normalized()).normalized(),
@@ -134,13 +194,9 @@ std::array<Pose, 2> guesses(const Sight& sight, const Camera& camera) {
   const Vec3 sight_line = one.translation().normalized(), normal = one.linear().col(2);
   const Vec3 mirrored = 2 * sight_line.dot(normal) * sight_line - normal;
   Pose other = one;
-  other.linear() = turnFromTo(normal, mirrored).toRotationMatrix() * one.linear();
-  const Pose marker_from_probe = sight.marker->probe_from_marker.inverse();
+  other.linear() = rotationFromTo(normal, mirrored).toRotationMatrix() * one.linear();
+  const Pose marker_from_probe = observation.marker->probe_from_marker.inverse();
   return {one * marker_from_probe, other * marker_from_probe};
-}
-
-double angleBetween(const Pose& a, const Pose& b) {
-  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
 Vec2 centreOf(const SeenMarker& marker) {
@@ -149,10 +205,11 @@ Vec2 centreOf(const SeenMarker& marker) {
   return sum / 4;
 }
 
-// A marker that is seen more than once is seen wrongly at least once: none of its images counts.
-std::vector<Sight> sightsOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>& rig,
-                            std::vector<RepeatedMarker>& repeated) {
-  std::vector<Sight> sights;
+// A marker that is detected more than once has at least one wrong detection; none is used.
+std::vector<MarkerObservation> observationsOf(const std::vector<SeenMarker>& seen,
+                                              const std::vector<RigMarker>& rig,
+                                              std::vector<RepeatedMarker>& repeated) {
+  std::vector<MarkerObservation> observations;
   for (const RigMarker& marker : rig) {
     const auto is = [&](const SeenMarker& s) {
       return s.id == marker.id && s.family == marker.family;
@@ -160,52 +217,55 @@ std::vector<Sight> sightsOf(const std::vector<SeenMarker>& seen, const std::vect
     std::vector<const SeenMarker*> images;
     for (const SeenMarker& image : seen)
       if (is(image)) images.push_back(&image);
-    if (images.size() == 1) sights.push_back({images[0], marker.corners(), &marker});
+    if (images.size() == 1) observations.push_back({images[0], marker.corners(), &marker});
     if (images.size() < 2) continue;
     repeated.push_back({marker.family, marker.id, {}});
     for (const SeenMarker* image : images) repeated.back().places.push_back(centreOf(*image));
   }
-  return sights;
+  return observations;
 }
 
-// A corner counts as exactly as it is known: those of a face seen from its edge hardly.
-double rmsOf(const std::vector<Sight>& sights, const Camera& camera, const Pose& pose) {
+// Corners are weighted by their accuracy, which is low on faces seen edge on.
+double rmsOf(const std::vector<MarkerObservation>& observations, const Camera& camera,
+             const Pose& pose) {
   double sum = 0, weights = 0;
-  for (const Sight& sight : sights)
+  for (const MarkerObservation& observation : observations)
     for (std::size_t i = 0; i < 4; ++i) {
-      const FittedCorner& corner = sight.seen->corner[i];
-      const Vec2 miss = pinhole(camera, pose * sight.corner[i]) - corner.straight;
-      sum += 2 * (corner.whiten * miss).squaredNorm();
+      const FittedCorner& corner = observation.seen->corner[i];
+      const Vec2 residual = pinhole(camera, pose * observation.corner[i]) - corner.undistorted;
+      sum += 2 * (corner.whiten * residual).squaredNorm();
       weights += corner.whiten.squaredNorm();
     }
   return std::sqrt(sum / weights);
 }
 
-// The best of all guesses, and the best that is another pose: both with the markers that fit.
+// The best of all poses and the best different pose, both with the same inliers.
 struct PoseChoice {
-  std::vector<Sight> sights;
+  std::vector<MarkerObservation> observations;
   Fit best, other;
 };
 
-PoseChoice choose(const std::vector<Sight>& sights, const Camera& camera) {
+PoseChoice choose(const std::vector<MarkerObservation>& observations, const Camera& camera) {
   std::vector<Pose> starts;
-  for (const Sight& sight : sights)
-    for (const Pose& pose : guesses(sight, camera)) starts.push_back(pose);
-  const auto miss = [&](const Pose& pose) {
+  for (const MarkerObservation& observation : observations)
+    for (const Pose& pose : guesses(observation, camera)) starts.push_back(pose);
+  const auto costOf = [&](const Pose& pose) {
     double sum = 0;
-    for (const Sight& sight : sights) sum += std::min(missOf(sight, camera, pose), kFar * kFar);
+    for (const MarkerObservation& observation : observations)
+      sum += std::min(reprojectionError(observation, camera, pose), kFar * kFar);
     return sum;
   };
   std::sort(starts.begin(), starts.end(),
-            [&](const Pose& a, const Pose& b) { return miss(a) < miss(b); });
+            [&](const Pose& a, const Pose& b) { return costOf(a) < costOf(b); });
   PoseChoice choice;
-  for (const Sight& sight : sights)
-    if (missOf(sight, camera, starts[0]) < kFar * kFar) choice.sights.push_back(sight);
+  for (const MarkerObservation& observation : observations)
+    if (reprojectionError(observation, camera, starts[0]) < kFar * kFar)
+      choice.observations.push_back(observation);
   choice.best.cost = choice.other.cost = INFINITY;
-  if (choice.sights.empty()) return choice;
+  if (choice.observations.empty()) return choice;
   std::vector<Fit> fits;
   for (std::size_t i = 0; i < std::min<std::size_t>(starts.size(), 4); ++i)
-    fits.push_back(refined(choice.sights, camera, starts[i]));
+    fits.push_back(refined(choice.observations, camera, starts[i]));
   for (const Fit& fit : fits)
     if (fit.cost < choice.best.cost) choice.best = fit;
   for (const Fit& fit : fits)
@@ -214,22 +274,22 @@ PoseChoice choose(const std::vector<Sight>& sights, const Camera& camera) {
   return choice;
 }
 
-// How far corners are off, over what their edges allow: 1 where those hold.
+// Returns the mean squared residual per degree of freedom; 1 if the edges' deviations are right.
 double spreadOf(const PoseChoice& choice) {
-  return choice.best.cost / (8 * static_cast<double>(choice.sights.size()) - 6);
+  return choice.best.cost / (8 * static_cast<double>(choice.observations.size()) - 6);
 }
 
-// Takes out the marker that contradicts the others, if there are enough to say so. The others are
-// asked without it: beside it they fit a pose that leans towards it.
-bool dropWorst(PoseChoice& choice, const Camera& camera) {
-  if (choice.sights.size() < 3 || spreadOf(choice) < kContradicts) return false;
+// Removes the marker that contradicts the others, if there are enough. The others are fitted
+// without it, because it would bias their pose.
+bool removeWorstOutlier(PoseChoice& choice, const Camera& camera) {
+  if (choice.observations.size() < 3 || spreadOf(choice) < kContradicts) return false;
   std::optional<PoseChoice> without;
   double least = INFINITY, next = INFINITY;
-  for (std::size_t i = 0; i < choice.sights.size(); ++i) {
-    std::vector<Sight> others = choice.sights;
+  for (std::size_t i = 0; i < choice.observations.size(); ++i) {
+    std::vector<MarkerObservation> others = choice.observations;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     PoseChoice left = choose(others, camera);
-    if (left.sights.size() < others.size()) continue; // leaves out more than it was asked
+    if (left.observations.size() < others.size()) continue; // has other outliers
     const double spread = spreadOf(left);
     if (spread < least) {
       next = least;
@@ -239,7 +299,7 @@ bool dropWorst(PoseChoice& choice, const Camera& camera) {
       next = std::min(next, spread);
     }
   }
-  // Of three, each one that is left out may leave two that fit.
+  // Any two of three markers may be consistent.
   if (!without || least * kContradicts > spreadOf(choice) || 2 * least > next) return false;
   choice = std::move(*without);
   return true;
@@ -282,9 +342,9 @@ std::string reasonOf(const SeenRig& seen) {
 }
 
 SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>& rig,
-               const Camera& camera, const Pose* lately, const GreyFrame* image) {
+               const Camera& camera, const Pose* previous_pose, const GreyFrame* image) {
   SeenRig result;
-  const std::vector<Sight> all = sightsOf(seen, rig, result.repeated);
+  const std::vector<MarkerObservation> all = observationsOf(seen, rig, result.repeated);
   if (all.empty()) {
     if (!result.repeated.empty()) result.verdict = RigVerdict::repeated;
     return result;
@@ -294,30 +354,34 @@ SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>
     result.verdict = RigVerdict::misfit;
     return result;
   }
-  while (dropWorst(choice, camera)) {
+  while (removeWorstOutlier(choice, camera)) {
   }
-  result.markers = choice.sights.size();
+  result.markers = choice.observations.size();
   result.dropped = all.size() - result.markers;
+  for (const MarkerObservation& observation : choice.observations)
+    result.used.push_back(static_cast<std::size_t>(observation.marker - rig.data()));
   const double residuals = 8. * static_cast<double>(result.markers);
-  const auto unit = [&](const Fit& fit) { // of what the edges say, from how well it fits
-    return std::max(1., (kPrior + fit.cost) / (kPrior + residuals - 6));
+  const auto unit = [&](const Fit& fit) { // scale of the edges' variances, from the fit
+    return std::max(1., (kPriorResiduals + fit.cost) / (kPriorResiduals + residuals - 6));
   };
-  double evidence = (choice.other.cost - choice.best.cost) / unit(choice.best); // twice a logarithm
-  if (evidence < kNoDoubt && image)
-    evidence =
-        std::min(evidence, kMostTrust) + 2 * (faceLikeness(*image, rig, camera, choice.best.pose) -
-                                              faceLikeness(*image, rig, camera, choice.other.pose));
+  // Difference of -2 log likelihood.
+  double evidence = (choice.other.cost - choice.best.cost) / unit(choice.best);
+  if (evidence < kCertainGap && image)
+    evidence = std::min(evidence, kMaxEvidence) +
+               2 * (appearanceLogRatio(*image, rig, camera, choice.best.pose) -
+                    appearanceLogRatio(*image, rig, camera, choice.other.pose));
   if (evidence < 0) std::swap(choice.best, choice.other);
-  if (std::abs(evidence) < kDoubt) {
-    const auto turn = [&](const Fit& fit) { return angleBetween(fit.pose, *lately); };
-    if (lately && turn(choice.other) < turn(choice.best)) std::swap(choice.best, choice.other);
-    if (!lately || turn(choice.best) > kOwnTurn ||
+  if (std::abs(evidence) < kMinCostGap) {
+    const auto turn = [&](const Fit& fit) { return angleBetween(fit.pose, *previous_pose); };
+    if (previous_pose && turn(choice.other) < turn(choice.best))
+      std::swap(choice.best, choice.other);
+    if (!previous_pose || turn(choice.best) > kOwnTurn ||
         turn(choice.other) < 2 * turn(choice.best) + kSame) {
       result.verdict = RigVerdict::ambiguous;
       return result;
     }
   }
-  result.rms = rmsOf(choice.sights, camera, choice.best.pose);
+  result.rms = rmsOf(choice.observations, camera, choice.best.pose);
   result.camera_from_probe = choice.best.pose;
   if (result.rms > kMisfit || 2 * result.dropped > all.size()) {
     result.verdict = RigVerdict::misfit;

@@ -1,4 +1,4 @@
-// The pose of a body of markers from one picture (A04): all its markers at once, with error bars.
+// Pose of a rig of markers from one picture, as a joint fit with covariance (A04).
 #pragma once
 
 #include "acquisition/tracking/marker_finder.h"
@@ -8,39 +8,40 @@ namespace patina {
 enum class RigVerdict {
   seen,
   no_marker,
-  ambiguous, // seen so flatly that it may as well be tilted the other way
-  misfit,    // its markers are not where the rig has them
-  repeated   // each of its markers that is seen is seen more than once
+  ambiguous, // planar pose ambiguity: two tilts fit
+  misfit,    // markers are not where the rig file has them
+  repeated   // every visible marker of the rig is detected more than once
 };
 std::string_view nameOf(RigVerdict verdict);
 
-// A marker of the rig that a frame shows more than once, so that none of its images counts.
+// A marker that is detected more than once in a frame; none of its detections is used.
 struct RepeatedMarker {
   std::string family;
   int id = 0;
-  std::vector<Vec2> places; // of its middles [px]
+  std::vector<Vec2> places; // centers [px]
 };
-// "marker 0 of 4x4_50 is seen twice, at (160, 239) and (480, 241) px".
+// Returns "marker 0 of 4x4_50 is seen twice, at (160, 239) and (480, 241) px".
 std::string textOf(const RepeatedMarker& marker);
 
 struct SeenRig {
   RigVerdict verdict = RigVerdict::no_marker;
   Pose camera_from_probe = Pose::Identity();
-  // Of the position [m], then of a turn about the camera's axes [rad].
+  // Covariance of the position [m], then of a rotation about the camera's axes [rad].
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  std::size_t markers = 0; // that it follows from
-  std::size_t dropped = 0; // that contradict the others
-  double rms = 0;          // of their corners, each as exactly as it is known [px]
+  std::size_t markers = 0;       // number of markers used
+  std::vector<std::size_t> used; // their places in the rig
+  std::size_t dropped = 0;       // number of outlier markers
+  double rms = 0;                // reprojection error of the corners, weighted by accuracy [px]
   std::vector<RepeatedMarker> repeated;
 };
-// Says why there is no pose.
+// Returns the reason why there is no pose.
 std::string reasonOf(const SeenRig& seen);
 
-// Where the corners leave two poses, the faces decide of which no marker was found, if there is an
-// `image` to look at; and where it does not say, `lately` does, if the rig cannot have turned as
-// far since.
+// Resolves the planar pose ambiguity. First the appearance of the undetected markers in `image`
+// decides; if that is inconclusive, `previous_pose` decides, provided the rig cannot have rotated
+// that far since.
 SeenRig poseOf(const std::vector<SeenMarker>& seen, const std::vector<RigMarker>& rig,
-               const Camera& camera, const Pose* lately = nullptr,
+               const Camera& camera, const Pose* previous_pose = nullptr,
                const GreyFrame* image = nullptr);
 
 } // namespace patina

@@ -3,14 +3,15 @@
 #include <cmath>
 #include <map>
 
-#include "acquisition/orientation.h"
+#include "acquisition/tracking/rig_misfit.h"
+#include "acquisition/values/orientation.h"
 #include "core/error.h"
 #include "core/numbers.h"
 
 namespace patina {
 namespace {
 
-constexpr double kLately = 0.15; // how long a pose helps to choose the next one [s]
+constexpr double kMaxPoseAge = 0.15; // largest age of a previous pose [s]
 
 } // namespace
 
@@ -26,7 +27,10 @@ CameraPose cameraPose(const SeenRig& seen, double t) {
 
 RigTracker::RigTracker(const Camera& camera, const std::vector<RigMarker>& rig,
                        const FinderOptions& options)
-    : camera_(camera), rig_(rig), options_(options) {
+    : camera_(camera), rig_(rig), options_(options), books_(codeBooksOf(rig)) {}
+
+std::vector<CodeBook> codeBooksOf(const std::vector<RigMarker>& rig) {
+  std::vector<CodeBook> books;
   std::map<std::string, std::vector<int>> ids;
   for (const RigMarker& marker : rig) ids[marker.family].push_back(marker.id);
   for (const auto& [name, wanted] : ids) {
@@ -35,14 +39,15 @@ RigTracker::RigTracker(const Camera& camera, const std::vector<RigMarker>& rig,
       if (id >= static_cast<int>(family.code.size()))
         throw Error("marker " + std::to_string(id) + ": family " + name + " has ids 0 to " +
                     std::to_string(family.code.size() - 1));
-    books_.emplace_back(family, wanted);
+    books.emplace_back(family, wanted);
   }
+  return books;
 }
 
 SeenRig RigTracker::track(const GreyFrame& image, double t) {
-  const bool lately = last_ && std::abs(t - last_t_) < kLately;
+  const bool previous_pose = last_ && std::abs(t - last_t_) < kMaxPoseAge;
   markers_ = findMarkers(image, books_, &camera_, options_);
-  const SeenRig seen = poseOf(markers_, rig_, camera_, lately ? &*last_ : nullptr, &image);
+  const SeenRig seen = poseOf(markers_, rig_, camera_, previous_pose ? &*last_ : nullptr, &image);
   if (seen.verdict == RigVerdict::seen) {
     last_ = seen.camera_from_probe;
     last_t_ = t;
@@ -59,9 +64,11 @@ std::vector<std::string> warningsOf(const TrackedFrames& found, const std::strin
                     "cannot be read; the first: " + found.first_fault);
   if (found.repeated > 0)
     lines.push_back(frames + ": in " + formatCount(found.repeated) + of +
-                    "a marker of the rig is seen more than once and does not count; the first: " +
-                    found.first_repeated + ": cover or print again whatever else shows it");
-  if (2 * found.dropped > found.poses.size())
+                    "a marker of the rig is seen more than once and ignored; the first: " +
+                    found.first_repeated + ": cover its other images or print it again");
+  if (!found.rig_doubt.empty())
+    lines.push_back(rig.string() + ": " + found.rig_doubt);
+  else if (found.isOfAnotherRig())
     lines.push_back(rig.string() + ": in " + formatCount(found.poses.size()) + " frames " +
                     formatCount(found.dropped) +
                     " markers were not where it has them, so that poses may be those of the wrong "
@@ -73,10 +80,11 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
                           const std::vector<RigMarker>& rig, const FinderOptions& options,
                           Progress& progress, const FrameListener& listener) {
   RigTracker tracker(camera, rig, options);
+  RigMisfit misfit(rig, camera);
   TrackedFrames result;
   double squares = 0, corners = 0;
   TurnedFrames turns;
-  std::optional<Camera> shown; // the camera, turned along with the first frame
+  std::optional<Camera> shown; // camera, turned with the first frame
   const std::optional<std::size_t> count = frames.count();
   const auto goWithout = [&](double t, const SeenRig& seen, const std::string& why) {
     result.without.push_back({t, why});
@@ -92,7 +100,11 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
       if (result.unreadable++ == 0) result.first_fault = frame->fault;
       continue;
     }
-    if (!shown) tracker.setCamera(*(shown = cameraOf(frame->image, camera, frame->name)));
+    if (!shown) {
+      shown = cameraOf(frame->image, camera, frame->name);
+      tracker.setCamera(*shown);
+      misfit.setCamera(*shown);
+    }
     requireSize(frame->image, *shown, frame->name);
     turns.add(frame->image, frame->name);
     const SeenRig seen = tracker.track(frame->image, frame->t);
@@ -100,7 +112,9 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
     if (!seen.repeated.empty() && result.repeated++ == 0)
       result.first_repeated =
           "at " + formatNumber(frame->t) + " s " + textOf(seen.repeated.front());
-    if (seen.verdict != RigVerdict::seen) {
+    const bool posed = seen.verdict == RigVerdict::seen;
+    misfit.add(tracker.markers(), seen, posed ? std::optional(result.poses.size()) : std::nullopt);
+    if (!posed) {
       goWithout(frame->t, seen, reasonOf(seen));
       result.ambiguous += seen.verdict == RigVerdict::ambiguous;
       result.misfit += seen.verdict == RigVerdict::misfit;
@@ -112,6 +126,7 @@ TrackedFrames trackFrames(FrameSource& frames, const Camera& camera,
     squares += n * seen.rms * seen.rms;
     corners += n;
   }
+  result.rig_doubt = misfit.judge(result.poses).text;
   result.notes = frames.notes();
   if (const std::string line =
           turns.line(shown && shown->width != camera.width ? &camera : nullptr, kTurnedUnlike);

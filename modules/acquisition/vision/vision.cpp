@@ -1,10 +1,16 @@
-#include "acquisition/vision/vision.h"
+#include "acquisition/loaded/vision.h"
 
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <stdexcept>
+#include <type_traits>
 
-#include "acquisition/vision/aruco.h"
+// OpenCV 4.7 moved its markers from the library `aruco` to `objdetect` and changed their interface.
+#if __has_include(<opencv2/objdetect/aruco_detector.hpp>)
+#include <opencv2/objdetect/aruco_detector.hpp>
+#else
+#include <opencv2/aruco.hpp>
+#endif
 
 namespace patina {
 namespace {
@@ -35,7 +41,7 @@ constexpr Named kFamilies[] = {{"4x4_50", cv::aruco::DICT_4X4_50},
                                {"apriltag_36h10", cv::aruco::DICT_APRILTAG_36h10},
                                {"apriltag_36h11", cv::aruco::DICT_APRILTAG_36h11}};
 
-// Nothing that is thrown, not even for want of memory, may leave the library.
+// No exception, not even std::bad_alloc, may leave the library.
 template <typename Work> std::string guarded(const Work& work) {
   try {
     return work();
@@ -48,7 +54,7 @@ template <typename Work> std::string guarded(const Work& work) {
   }
 }
 
-// Throws what cv::Exception cannot say: a name that is none, with those that there are.
+// Throws Error with the known names, which a cv::Exception does not list.
 const Named& familyNamed(const std::string& name) {
   const Named* found = std::find_if(std::begin(kFamilies), std::end(kFamilies),
                                     [&](const Named& each) { return name == each.name; });
@@ -58,9 +64,18 @@ const Named& familyNamed(const std::string& name) {
   throw std::runtime_error("'" + name + "' is no family of markers; there are " + names);
 }
 
+// Before OpenCV 4.7 a dictionary comes as a pointer.
+template <typename Found> cv::aruco::Dictionary dictionaryIn(const Found& found) {
+  if constexpr (std::is_same_v<Found, cv::aruco::Dictionary>)
+    return found;
+  else
+    return *found;
+}
+
 std::string family(const std::string& name, MarkerFamily& out) {
   return guarded([&]() -> std::string {
-    const cv::aruco::Dictionary dictionary = arucoFamily(familyNamed(name).value);
+    const cv::aruco::Dictionary dictionary =
+        dictionaryIn(cv::aruco::getPredefinedDictionary(familyNamed(name).value));
     out.name = name;
     out.side = dictionary.markerSize;
     out.code.clear();
@@ -83,26 +98,6 @@ std::string chessboard(const GreyFrame& image, int columns, int rows, std::vecto
     std::vector<cv::Point2f> found;
     if (!cv::findChessboardCorners(view, {columns, rows}, found)) return "";
     for (const cv::Point2f& point : found) corners.emplace_back(point.x, point.y);
-    return "";
-  });
-}
-
-std::string markers(const GreyFrame& image, const std::string& name, VisionRefinement refinement,
-                    std::vector<VisionMarker>& found) {
-  return guarded([&]() -> std::string {
-    constexpr cv::aruco::CornerRefineMethod kMethods[] = {
-        cv::aruco::CORNER_REFINE_NONE, cv::aruco::CORNER_REFINE_SUBPIX,
-        cv::aruco::CORNER_REFINE_CONTOUR, cv::aruco::CORNER_REFINE_APRILTAG};
-    found.clear();
-    const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
-    std::vector<std::vector<cv::Point2f>> corners;
-    std::vector<int> ids;
-    findAruco(view, familyNamed(name).value, kMethods[static_cast<int>(refinement)], corners, ids);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      found.push_back({ids[i], {}});
-      for (std::size_t k = 0; k < 4; ++k)
-        found.back().corner[k] = {corners[i][k].x, corners[i][k].y};
-    }
     return "";
   });
 }
@@ -131,7 +126,6 @@ std::string calibrate(const std::vector<BoardView>& views, CameraFit& fit) {
       fit.camera.distortion[static_cast<std::size_t>(i)] = distortion.at<double>(i);
     for (int i = 0; i < 9; ++i)
       fit.deviation[static_cast<std::size_t>(i)] = deviations.at<double>(i);
-    fit.view_rms.assign(each.begin<double>(), each.end<double>());
     return "";
   });
 }
@@ -139,8 +133,8 @@ std::string calibrate(const std::vector<BoardView>& views, CameraFit& fit) {
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) const VisionLibrary* patinaVisionLibrary() {
-  static constexpr VisionLibrary kLibrary{family, chessboard, markers, calibrate};
-  // No threads of the library's own beside the servo.
+  static constexpr VisionLibrary kLibrary{family, chessboard, calibrate};
+  // Keeps the library from starting threads that disturb the servo.
   static const bool quiet = [] {
     cv::setNumThreads(1);
     return true;

@@ -22,11 +22,11 @@ double brushWeight(const Brush& brush, double distance, double radius) {
 }
 
 double brushRadius(const Brush& brush, double force) {
-  return std::clamp(brush.radius + brush.radius_per_force * std::abs(force), brush.least_radius,
-                    std::max(brush.least_radius, brush.most_radius));
+  return std::clamp(brush.radius + brush.radius_per_force * std::abs(force), brush.min_radius,
+                    std::max(brush.min_radius, brush.max_radius));
 }
 
-double Dab::reach() const {
+double Dab::boundingRadius() const {
   return std::max(radius_from, radius_to) + 0.5 * (to - from).norm();
 }
 

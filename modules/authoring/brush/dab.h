@@ -1,4 +1,4 @@
-// One dab of the brush: a sphere, or where its weight is taken only once, a sphere swept along.
+// One dab of the brush: a sphere, or a sphere swept along a segment.
 #pragma once
 
 #include "core/types.h"
@@ -6,16 +6,16 @@
 
 namespace patina {
 
-// Swept, so that a stroke weighs every place by its distance to the path: dabs side by side would
-// leave ripples that are felt, and other ones at another rate of samples.
+// Swept dabs weight every point by its distance to the path. Separate spheres would leave ripples
+// that can be felt and that depend on the sample rate.
 struct Dab {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero(); // [m], world
   double radius_from = 0, radius_to = 0;       // [m]
-  Vec3 front = Vec3::Zero();                   // world: only what looks this way; zero = any side
+  Vec3 front = Vec3::Zero();                   // world: only faces oriented this way; zero = all
 
   Vec3 centre() const { return 0.5 * (from + to); }
-  // Of a sphere about the centre that holds all of it.
-  double reach() const;
+  // Returns the radius of a bounding sphere about the centre.
+  double boundingRadius() const;
   Dab in(const Pose& other_from_world) const; // the same path in another frame
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
@@ -18,7 +18,7 @@ std::shared_ptr<const TriangleMesh> weldedByPlace(const std::shared_ptr<const Tr
                                                   const Scene& scene) {
   std::vector<std::int32_t> one(mesh->positions.size());
   std::vector<Vec3> places;
-  std::size_t first = 0; // vertex of the object
+  std::size_t first = 0; // first vertex of the object
   for (const SceneObject& object : scene.objects) {
     const std::size_t count = object.mesh->positions.size();
     VertexWeld weld(count);

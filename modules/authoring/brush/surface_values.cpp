@@ -18,7 +18,7 @@ SurfaceValues surfaceValues(const Scene& scene, std::size_t object, const Surfac
     const Vec2 at = w[0] * uv[0] + w[1] * uv[1] + w[2] * uv[2];
     for (int c = 0; paint.color && c < kColorChannels; ++c)
       values.color[static_cast<std::size_t>(c)] = paint.color->sample(at.x(), at.y(), c);
-    if (scene.relief.source == ReliefFrom::color)
+    if (scene.relief.source == ReliefSource::color)
       values.height =
           scene.relief.height *
           std::clamp(grey({values.color[0], values.color[1], values.color[2]}), 0.0, 1.0);

@@ -1,4 +1,4 @@
-// What is painted at one point: for picking and the eyedropper.
+// Painted values at one point, for picking and the eyedropper.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 namespace patina {
 
 struct SurfaceValues {
-  std::array<double, 4> color{}; // premultiplied sRGB and coverage; 0 where nothing is painted
+  std::array<double, 4> color{}; // premultiplied sRGB and coverage; 0 where unpainted
   double height = 0;             // [m] of relief
-  Material material;             // as felt: paint over the scene's values
+  Material material;             // paint composited over the scene's values
 };
 
 // `point` on the object's own mesh (its faces count from 0).

@@ -19,11 +19,11 @@ ClosestPoint closestOn(const TriangleMesh& mesh, std::int32_t face, const Vec3& 
 }
 
 struct Crossing {
-  double t = 0; // of the way
+  double t = 0; // in units of `way`
   Vec3 barycentric = Vec3::Zero();
 };
 
-// Of the line through `from` along `way` with a face.
+// Intersects the line through `from` along `way` with a face.
 std::optional<Crossing> crossing(const TriangleMesh& mesh, std::int32_t face, const Vec3& from,
                                  const Vec3& way) {
   const std::size_t f = index(face);
@@ -33,7 +33,7 @@ std::optional<Crossing> crossing(const TriangleMesh& mesh, std::int32_t face, co
   if (!(std::abs(volume) > 1e-12 * sides.col(0).norm() * sides.col(1).norm() * way.norm()))
     return std::nullopt;
   const Vec3 at = sides.inverse() * (from - mesh.corner(f, 0));
-  constexpr double kSlack = 1e-9; // an edge belongs to both of its faces
+  constexpr double kSlack = 1e-9; // tolerance: an edge belongs to both of its faces
   const double rest = 1 - at[0] - at[1];
   if (!(at[0] >= -kSlack && at[1] >= -kSlack && rest >= -kSlack)) return std::nullopt;
   return Crossing{at[2], Vec3(rest, at[0], at[1])};
@@ -61,7 +61,7 @@ std::vector<std::int32_t> VolumeFill::facesOfCell(const Vec3& p) const {
   return faces;
 }
 
-std::optional<ClosestPoint> VolumeFill::pierced(const Vec3& tip, const Vec3& p) const {
+std::optional<ClosestPoint> VolumeFill::segmentHit(const Vec3& tip, const Vec3& p) const {
   const Vec3 way = p - tip;
   const double length = way.norm();
   if (!(length > 1e-12)) return std::nullopt;
@@ -70,7 +70,7 @@ std::optional<ClosestPoint> VolumeFill::pierced(const Vec3& tip, const Vec3& p) 
   double nearest = std::numeric_limits<double>::infinity();
   for (const std::int32_t face : facesOfCell(p)) {
     const std::optional<Crossing> hit = crossing(*surface_->mesh, face, tip, way);
-    // What lies beyond p counts only where nothing lies before it.
+    // Crossings beyond p count only if there are none before it.
     if (!hit || hit->t < 0 || hit->t > end) continue;
     const double rank = hit->t <= 1 ? 1 - hit->t : hit->t;
     if (!(rank < nearest)) continue;
@@ -123,7 +123,7 @@ std::span<const std::int32_t> VolumeFill::fill(const Vec3& centre, double radius
         visit(neighbours[k]);
         continue;
       }
-      // Where three faces or more meet no one neighbour is named: over the edge's ends.
+      // At a boundary or non-manifold edge: visits the faces around its two vertices.
       const Triangle& triangle = surface_->welded->triangles[index(face)];
       visitFan(triangle[k]);
       visitFan(triangle[(k + 1) % 3]);
@@ -186,7 +186,7 @@ void VolumeFill::visit(std::int32_t face) {
   stack_.push_back(face);
 }
 
-// Once a fill for each vertex, or the hub of a great fan would cost the square of its faces.
+// Visits each vertex once per fill, since a large fan's hub would take quadratic time.
 void VolumeFill::visitFan(std::int32_t vertex) {
   std::uint32_t& mark = vertex_mark_[index(vertex)];
   if (mark == epoch_) return;

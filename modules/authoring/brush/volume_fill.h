@@ -1,4 +1,4 @@
-// Which faces a brush reaches, found without looking at the others (K15).
+// Finds the faces within the brush in time proportional to their number (K15).
 #pragma once
 
 #include <cstdint>
@@ -12,29 +12,29 @@
 
 namespace patina {
 
-// Holds marks for every face and vertex, made once, so that a fill costs what it finds. One thread.
+// Holds marks for every face and vertex, made once. One thread.
 class VolumeFill {
  public:
   explicit VolumeFill(std::shared_ptr<const PaintSurface> surface);
 
-  // The surface's point nearest to p, as far as the faces that the nodes about p name and a walk
-  // downhill from them tell. Nullopt beyond the field's band.
+  // Returns the surface point nearest to p, starting from the nearest faces of the nodes about p
+  // and descending over neighbours. Nullopt outside the field's band.
   std::optional<ClosestPoint> foot(const Vec3& p) const;
 
-  // Where the way from the tip to p goes through a face that the nodes of p's cell name, the place
-  // nearest to p; two voxels beyond p where there is none before (K15). Nullopt: none there either.
-  std::optional<ClosestPoint> pierced(const Vec3& tip, const Vec3& p) const;
+  // Returns where the segment from the tip to p crosses one of the nearest faces of p's cell: the
+  // crossing nearest to p, or one up to two voxels beyond p (K15), or nullopt.
+  std::optional<ClosestPoint> segmentHit(const Vec3& tip, const Vec3& p) const;
 
-  // Faces of which some point is within `radius` of the centre: those connected with `seed` inside
-  // the sphere, and with any face that a node inside it names, so that other objects and parts are
-  // found too. Parts between nodes may be missed; what is returned is within reach. Where `front`
-  // is not zero, only faces whose normal has a positive part along it, or that have no area. By
-  // object; valid until the next fill.
+  // Returns the faces with a point within `radius` of the centre that are connected inside the
+  // sphere with `seed` or with the nearest face of a node inside, which finds other objects and
+  // parts too. Parts between nodes may be missed. If `front` is not zero, only faces whose normal
+  // has a positive component along it, or without area. Sorted by object; valid until the next
+  // fill.
   std::span<const std::int32_t> fill(const Vec3& centre, double radius, std::int32_t seed,
                                      const Vec3& front);
 
  private:
-  std::vector<std::int32_t> facesOfCell(const Vec3& p) const; // that its nodes name
+  std::vector<std::int32_t> facesOfCell(const Vec3& p) const; // nearest faces of its nodes
   void nextEpoch();
   void seedFromNodes();
   void visit(std::int32_t face);
@@ -42,7 +42,7 @@ class VolumeFill {
   bool reaches(std::int32_t face) const;
 
   std::shared_ptr<const PaintSurface> surface_;
-  std::vector<std::uint32_t> face_mark_, vertex_mark_; // == epoch_: seen in this fill
+  std::vector<std::uint32_t> face_mark_, vertex_mark_; // == epoch_: visited in this fill
   std::uint32_t epoch_ = 0;
   std::vector<std::int32_t> found_, stack_;
   Vec3 centre_ = Vec3::Zero(), front_ = Vec3::Zero();

@@ -1,11 +1,11 @@
-// Relief baked into the field, as the paper does it (K21): phi' = phi - s g(c).
+// Bakes relief into the field, as in the paper (K21): phi' = phi - s g(c).
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "authoring/images/image_range.h"
 #include "core/progress.h"
 #include "field/store/surface_field.h"
 #include "geometry/atlas/texture_layout.h"
@@ -14,53 +14,69 @@
 
 namespace patina {
 
-// Relief of the object whose faces begin at first_face of the joint mesh.
-struct ReliefSource {
+// Minimum and maximum of an image, kept per tile, so that an update reads only changed tiles.
+struct TileRange {
+  float low = 0, high = 0; // range, including 0
+  bool finite = true;      // all values are finite
+  float highest() const { return std::max(high, -low); }
+};
+
+struct ImageRange {
+  TileRange all;
+  std::vector<TileRange> tiles;
+};
+
+// Covers all channels. `known` belongs to `before`, an image of any size; both null: reads every
+// texel. The result does not depend on them. Parallel.
+ImageRange imageRange(const TiledImage& image, const TiledImage* before = nullptr,
+                      const ImageRange* known = nullptr);
+
+// Relief of the object whose faces begin at first_face of the combined mesh.
+struct ReliefInput {
   std::int32_t first_face = 0, faces = 0;
   std::shared_ptr<const CornerUvs> uvs;
   std::shared_ptr<const TiledImage> image;   // one channel; null: flat
-  double height = 0;                         // [m] of g = 1
-  std::shared_ptr<const ImageRange> range{}; // of the image; null: every texel is looked at
+  double height = 0;                         // [m] at an image value of 1
+  std::shared_ptr<const ImageRange> range{}; // range of the image; null: computed from every texel
 };
 
-// Voxels of band that a baked field keeps beyond its relief: down to there contact is as deep as it
-// looks.
-inline constexpr double kBandBeyondRelief = 3;
-// Voxels that engraving leaves of the nearer half of a plate: those that the cells of the new
-// surface and their gradients read.
-inline constexpr double kPlateBelowRelief = 2;
+// Voxels of band that a baked field keeps beyond its relief, in which contact has its true depth.
+inline constexpr double kBandMargin = 3;
+// Voxels that engraving leaves in the nearer half of a sheet, as cells of the new surface and their
+// gradients need them.
+inline constexpr double kSheetMargin = 2;
 
-// Where each node of the band reads its height: the point of its nearest face that is closest to
-// it. Immutable; made once for a field and its layouts. Any thread.
+// Positions in the image at which each node of the band reads its height: that of the closest point
+// on its nearest face. Immutable; made once for a field and its layouts. Any thread.
 //
-// Baked fields store the nodes that the base stores, moved. Their band is the base's less the
-// highest relief up or down, for only that far from the new surface is every node stored. Coarse
-// nodes inside move by the height at their foot, or by the mean of their neighbours' where they
-// have no single one; those outside the band by the highest relief, so that they remain lower
-// bounds. The back and the sides of a plate stay where they are. phi' is exact displacement along
-// normals, not a distance: |grad phi'| is sqrt(1 + slope^2). Of several merged objects a node reads
-// its face where that comes nearest, also where another object hides that place.
+// Baked fields store the same nodes, moved. Their band is the base's minus the largest |relief|,
+// because only within that distance of the new surface is every node stored. Coarse nodes inside
+// move by the height at their closest point, or by their neighbours' mean if it is not unique;
+// those outside the band move by the largest relief and remain lower bounds. The back and sides of
+// a sheet do not move. phi' is the exact displacement along normals, not a distance: |grad phi'| is
+// sqrt(1 + slope^2). In a merged field a node uses its nearest face even where another object hides
+// that point.
 class ReliefBake {
  public:
-  // `mesh` (world) is what the base was built from. Throws Cancelled; invalid_argument without a
-  // face layer or if the sources do not fit the mesh.
+  // `mesh` (world) is the mesh of the base. Throws Cancelled; invalid_argument without a face layer
+  // or if the sources do not fit the mesh.
   ReliefBake(std::shared_ptr<const SurfaceField> base, const TriangleMesh& mesh,
-             std::span<const ReliefSource> sources, Progress& progress);
+             std::span<const ReliefInput> sources, Progress& progress);
   ~ReliefBake();
 
-  // Always from the base, so that twice is once and no image is the base itself, bit for bit;
-  // blocks that relief leaves as they are are shared with it. With samples. Parallel. `sources` are
-  // those of the constructor with any images and heights. Throws Error that names the band if less
-  // than kBandBeyondRelief, or in a plate kPlateBelowRelief, would be left of it, or if an image
-  // holds a value that is not finite.
-  std::shared_ptr<const SurfaceField> baked(std::span<const ReliefSource> sources) const;
-  // baked(sources), bit for bit; `before` = baked(old_sources). Only what reads a texel that
-  // differs is made anew, wherever on the surface that is; images that share tiles are compared
-  // quickest.
-  std::shared_ptr<const SurfaceField> rebaked(const SurfaceField& before,
-                                              std::span<const ReliefSource> old_sources,
-                                              std::span<const ReliefSource> sources) const;
-  std::size_t bytes() const; // beyond the base
+  // Bakes from the base, so that repeating it changes nothing and no image gives the base, bit for
+  // bit; shares blocks that relief does not change. With samples. Parallel. `sources` are those of
+  // the constructor with any images and heights. Throws Error that names the band if less than
+  // kBandMargin, or kSheetMargin in a sheet, would remain, or if an image holds a value that is not
+  // finite.
+  std::shared_ptr<const SurfaceField> baked(std::span<const ReliefInput> sources) const;
+  // Equals baked(sources) bit for bit; `before` = baked(old_sources). Recomputes only nodes that
+  // read a changed texel, anywhere on the surface; comparison is fastest for images that share
+  // tiles.
+  std::shared_ptr<const SurfaceField> updateBaked(const SurfaceField& before,
+                                                  std::span<const ReliefInput> old_sources,
+                                                  std::span<const ReliefInput> sources) const;
+  std::size_t bytes() const; // without the base
 
  private:
   struct Impl;

@@ -20,16 +20,16 @@ const float* tileOrZeros(const TiledImage& image, std::size_t index) {
   return tile ? tile : zeros();
 }
 
-bool isFlat(const ReliefSource& source) {
+bool isFlat(const ReliefInput& source) {
   return !source.image || source.height == 0;
 }
 
-// Look-ups that read a texel of [i0, i1] x [j0, j1]: up to one texel away, and a little more for
-// the rounding of u * width.
+// Returns the look-ups that read a texel of [i0, i1] x [j0, j1]: up to one texel away, plus the
+// rounding of u * width.
 UvBox around(int i0, int j0, int i1, int j1, const TiledImage& image) {
   constexpr double kRound = 0.01; // [texel]
   const auto at = [](double texel, int size) { return static_cast<float>(texel / size); };
-  // A border's texel is read from beyond it, too, where coordinates are clamped.
+  // Clamped coordinates beyond the border also read its texels.
   const auto low = [&](int i, int size) { return i == 0 ? -1.0F : at(i - 0.5 - kRound, size); };
   const auto high = [&](int i, int size) {
     return i == size - 1 ? 2.0F : at(i + 1.5 + kRound, size);
@@ -40,7 +40,7 @@ UvBox around(int i0, int j0, int i1, int j1, const TiledImage& image) {
 
 } // namespace
 
-ReliefImage::ReliefImage(const ReliefSource& source, double voxel) {
+ReliefImage::ReliefImage(const ReliefInput& source, double voxel) {
   if (patina::isFlat(source)) return;
   const TiledImage& image = *source.image;
   bool any = false;
@@ -58,9 +58,9 @@ ReliefImage::ReliefImage(const ReliefSource& source, double voxel) {
   scale_ = static_cast<float>(source.height / voxel);
 }
 
-ReliefRange reliefRange(std::span<const ReliefSource> sources) {
+ReliefRange reliefRange(std::span<const ReliefInput> sources) {
   ReliefRange range;
-  for (const ReliefSource& source : sources) {
+  for (const ReliefInput& source : sources) {
     if (isFlat(source)) continue;
     const TileRange own = (source.range ? *source.range : imageRange(*source.image)).all;
     if (!own.finite || !std::isfinite(source.height))
@@ -98,7 +98,7 @@ std::vector<TexelBox> changedTexels(const TiledImage& before, const TiledImage& 
   return boxes;
 }
 
-std::vector<UvBox> differences(const ReliefSource& before, const ReliefSource& after) {
+std::vector<UvBox> differences(const ReliefInput& before, const ReliefInput& after) {
   if (isFlat(before) && isFlat(after)) return {};
   const std::vector<UvBox> everywhere{{{-1, -1}, {2, 2}}};
   if (before.height != after.height || isFlat(before) || isFlat(after)) return everywhere;

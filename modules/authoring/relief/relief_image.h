@@ -1,4 +1,4 @@
-// A relief image as the bake reads it, and where two versions of it differ: private to the bake.
+// A relief image for the bake, and the difference of two versions. Internal to the bake.
 #pragma once
 
 #include <algorithm>
@@ -7,19 +7,19 @@
 #include <span>
 #include <vector>
 
-#include "authoring/relief/relief_feet.h"
+#include "authoring/relief/relief_lookup.h"
 #include "geometry/atlas/texel_map.h"
 
 namespace patina {
 
-// A view: the image must outlive it. Absent tiles read as zeros.
+// View of an image, which must outlive it. Missing tiles read as zeros.
 class ReliefImage {
  public:
   ReliefImage() = default; // flat
-  ReliefImage(const ReliefSource& source, double voxel);
+  ReliefImage(const ReliefInput& source, double voxel);
   bool isFlat() const { return tiles_.empty(); }
 
-  // What phi falls by [voxel]: bilinear between texel centres, clamped at the border.
+  // Returns the decrease of phi [voxel]: bilinear between texel centres, clamped at the border.
   float at(const NodeUv& uv) const {
     const float x = std::clamp(uv[0] * width_ - 0.5F, 0.0F, width_ - 1);
     const float y = std::clamp(uv[1] * height_ - 0.5F, 0.0F, height_ - 1);
@@ -36,7 +36,7 @@ class ReliefImage {
     } else {
       v00 = texel(i, j), v10 = texel(i + 1, j), v01 = texel(i, j + 1), v11 = texel(i + 1, j + 1);
     }
-    // Nested so that equal texels give their own value, bit for bit.
+    // Nested so that equal texels give exactly their value.
     const float low = v00 + a * (v10 - v00), high = v01 + a * (v11 - v01);
     return scale_ * (low + b * (high - low));
   }
@@ -52,20 +52,20 @@ class ReliefImage {
   float width_ = 0, height_ = 0, scale_ = 0;
 };
 
-// The largest and smallest height * g [m] of all images, 0 among them. Throws Error for a value
-// that is not finite.
+// Range of height * image value [m] over all images, including 0. Throws Error for a non-finite
+// value.
 struct ReliefRange {
   double low = 0, high = 0;
 };
-ReliefRange reliefRange(std::span<const ReliefSource> sources);
+ReliefRange reliefRange(std::span<const ReliefInput> sources);
 
-// Per tile that differs, the texels that do; of images of one size and one channel.
+// Returns the changed texels of each tile, for one-channel images of equal size.
 std::vector<TexelBox> changedTexels(const TiledImage& before, const TiledImage& after);
 
-// The part of the unit square where look-ups may differ between two versions of a source, as boxes.
+// Part of the unit square in which look-ups may differ between two versions of a source, as boxes.
 struct UvBox {
   NodeUv low, high;
 };
-std::vector<UvBox> differences(const ReliefSource& before, const ReliefSource& after);
+std::vector<UvBox> differences(const ReliefInput& before, const ReliefInput& after);
 
 } // namespace patina

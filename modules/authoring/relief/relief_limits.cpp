@@ -6,14 +6,14 @@
 
 #include <tbb/parallel_for.h>
 
-#include "authoring/brush/texel_rows.h"
+#include "authoring/relief/texel_rows.h"
 
 namespace patina {
 namespace {
 
 using Row = std::vector<TexelOnSurface>;
 
-// All nine texels show one piece of the surface.
+// Returns true if all nine texels show one piece of the surface.
 bool isWhole(const std::array<Row, 3>& rows, std::size_t i) {
   const TexelOnSurface& middle = rows[1][i];
   if (!middle.inside) return false;
@@ -26,7 +26,7 @@ bool isWhole(const std::array<Row, 3>& rows, std::size_t i) {
   return true;
 }
 
-// Largest |eigenvalue| of the second derivatives g of the image along the surface [1/m^2 of g].
+// Largest |eigenvalue| of the image's second derivatives along the surface [1/m^2 per image unit].
 double curvatureAt(const TiledImage& image, const TexelMetric& metric, int i, int j) {
   const auto g = [&](int di, int dj) { return static_cast<double>(image.at(i + di, j + dj, 0)); };
   const double here = 2 * g(0, 0), uu = g(-1, 0) - here + g(1, 0), vv = g(0, -1) - here + g(0, 1);
@@ -55,7 +55,7 @@ bool isSameAbout(const TiledImage& a, const TiledImage& b, int across, int up) {
 }
 
 double worstOfTile(const TexelRows& source, const TiledImage& image, int across, int up) {
-  // A texel at the image's border has no nine.
+  // Texels at the image's border have no nine neighbours.
   const int i0 = std::max(1, across * kTileSide), j0 = std::max(1, up * kTileSide);
   const int i1 = std::min(image.width() - 1, (across + 1) * kTileSide);
   const int j1 = std::min(image.height() - 1, (up + 1) * kTileSide);
@@ -80,15 +80,15 @@ double worstOfTile(const TexelRows& source, const TiledImage& image, int across,
 
 } // namespace
 
-struct BendMap::Impl {
+struct CurvatureMap::Impl {
   std::shared_ptr<const TriangleMesh> mesh;
   std::shared_ptr<const CornerUvs> uvs;
   TexelMap texels;
   std::vector<TexelMetric> metrics;
 };
 
-BendMap::BendMap(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const CornerUvs> uvs,
-                 int width, int height)
+CurvatureMap::CurvatureMap(std::shared_ptr<const TriangleMesh> mesh,
+                           std::shared_ptr<const CornerUvs> uvs, int width, int height)
     : impl_(std::make_unique<Impl>()) {
   impl_->texels = texelMap(*uvs, width, height);
   impl_->metrics = texelMetrics(*mesh, *uvs, width, height);
@@ -96,19 +96,19 @@ BendMap::BendMap(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const
   impl_->uvs = std::move(uvs);
 }
 
-BendMap::~BendMap() = default;
+CurvatureMap::~CurvatureMap() = default;
 
-bool BendMap::fits(const CornerUvs& uvs, int width, int height) const {
+bool CurvatureMap::fits(const CornerUvs& uvs, int width, int height) const {
   return impl_->uvs.get() == &uvs && impl_->texels.width == width && impl_->texels.height == height;
 }
 
-std::size_t BendMap::bytes() const {
+std::size_t CurvatureMap::bytes() const {
   return impl_->texels.owner.capacity() * sizeof(std::int32_t) +
          impl_->metrics.capacity() * sizeof(TexelMetric);
 }
 
-std::vector<float> BendMap::byTile(const TiledImage& image, const TiledImage* before,
-                                   const std::vector<float>* known) const {
+std::vector<float> CurvatureMap::perTile(const TiledImage& image, const TiledImage* before,
+                                         const std::vector<float>* known) const {
   std::vector<float> bends(image.tileCount(), 0);
   const bool knows =
       before && known && known->size() == bends.size() && before->tileCount() == image.tileCount();
@@ -140,8 +140,8 @@ ReliefLimit reliefLimit(const TriangleMesh& mesh, const TextureLayout& layout,
   limit.highest = scale * std::max(high, -low);
   if (limit.highest == 0) return limit;
   const std::shared_ptr<const TriangleMesh> borrowed(std::shared_ptr<void>(), &mesh);
-  const BendMap map(borrowed, layout.uvs, relief.width(), relief.height());
-  const std::vector<float> bends = map.byTile(relief);
+  const CurvatureMap map(borrowed, layout.uvs, relief.width(), relief.height());
+  const std::vector<float> bends = map.perTile(relief);
   limit.curvature = scale * static_cast<double>(*std::max_element(bends.begin(), bends.end()));
   if (limit.curvature == 0) return limit;
   limit.wavelength = 2 * M_PI * std::sqrt(0.5 * scale * (high - low) / limit.curvature);

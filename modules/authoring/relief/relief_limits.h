@@ -1,4 +1,4 @@
-// How high a relief may be before touching it buzzes (F7).
+// Largest relief height without instability on contact (F7).
 #pragma once
 
 #include <memory>
@@ -11,38 +11,36 @@
 
 namespace patina {
 
-// A texture under the normal force P makes a lateral stiffness of P |h''|; above 2 b / T, or
-// 2 b / T / (1 + 2 n) with n samples of delay, nothing settles on it, whatever the surface's own
-// stiffness.
+// A texture under the normal force P has a lateral stiffness of P |h''|. Above 2 b / T, or 2 b / T
+// / (1 + 2 n) with n samples of delay, contact is unstable at any stiffness of the surface.
 //
-// h'' is taken by second differences over one texel, along the surface by the face's own metric, in
-// the direction where it is largest, wherever all nine texels show one piece of the surface. What
-// is a texel wide counts, noise of the image too: it is felt. Smoothing is the cure
-// (relief_smoothing.h).
+// h'' comes from second differences over one texel, along the surface by the face's own metric, in
+// the direction of its maximum, if all nine texels show one piece of the surface. Details of one
+// texel count, including image noise, because they can be felt; relief_smoothing.h reduces them.
 struct ReliefLimit {
   double highest = 0;   // [m], |height|
-  double curvature = 0; // [1/m], worst |h''| along the surface
-  // [m], 2 pi sqrt(amplitude / curvature), amplitude half the difference of highest and lowest: of
-  // a sine as curved. 0 if flat.
+  double curvature = 0; // [1/m], largest |h''| along the surface
+  // [m], 2 pi sqrt(amplitude / curvature) with half the height range as amplitude: the wavelength
+  // of a sine of equal curvature. 0 if flat.
   double wavelength = 0;
-  // [m] of `highest` on the device, pressed as hard as the force limit P lets the servo press
-  // back: of a sine 2 b lambda^2 / (4 pi^2 P T). Absent without a device and for a relief without
-  // curvature.
+  // [m], maximum stable `highest` on the device at the force limit P: 2 b lambda^2 / (4 pi^2 P T)
+  // for a sine. Absent without a device or without curvature.
   std::optional<double> admissible;
 };
-// The h'' of ReliefLimit for images of one size on one layout, kept by tile: a version that shares
-// tiles with a known one costs what it changed and the tiles about it.
-class BendMap {
+// h'' of ReliefLimit for images of one size on one layout, kept per tile, so that an update reads
+// only changed tiles and their neighbours.
+class CurvatureMap {
  public:
-  BendMap(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const CornerUvs> uvs, int width,
-          int height);
-  ~BendMap();
+  CurvatureMap(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const CornerUvs> uvs,
+               int width, int height);
+  ~CurvatureMap();
 
-  // Worst |h''| [1/m] by tile for a height of 1 m at g = 1; `image` of one channel. `known` is that
-  // of `before`, both null: every texel is looked at. The result does not depend on them. Parallel.
-  std::vector<float> byTile(const TiledImage& image, const TiledImage* before = nullptr,
-                            const std::vector<float>* known = nullptr) const;
-  bool fits(const CornerUvs& uvs, int width, int height) const; // the same coordinates, by address
+  // Returns the largest |h''| [1/m] of each tile for a height of 1 m at an image value of 1. One
+  // channel. `known` belongs to `before`; both null: reads every texel. The result does not depend
+  // on them. Parallel.
+  std::vector<float> perTile(const TiledImage& image, const TiledImage* before = nullptr,
+                             const std::vector<float>* known = nullptr) const;
+  bool fits(const CornerUvs& uvs, int width, int height) const; // the same coordinates by address
   std::size_t bytes() const;
 
  private:

@@ -12,22 +12,22 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "authoring/brush/texel_rows.h"
 #include "authoring/relief/relief_image.h"
 #include "authoring/relief/relief_window.h"
+#include "authoring/relief/texel_rows.h"
 
 namespace patina {
 namespace {
 
-constexpr double kMostTexels = 64;       // deviation, in texels
-constexpr double kSqueezed = 4;          // texels a side that stand for one of mean size, at most
-constexpr double kLeastDeviation = 1.25; // in cells
-constexpr double kLargest = 0.01;        // of the surface, where texels may be larger than is asked
-constexpr float kLeastValue = 1e-7F;
-constexpr double kTail = 1e-4; // of the series: kLeastValue of a millimetre
+constexpr double kMaxTexels = 64;      // largest deviation [texel]
+constexpr double kSqueezed = 4;        // smallest texels count as this fraction of the mean side
+constexpr double kMinDeviation = 1.25; // [cell]
+constexpr double kLargest = 0.01;      // share of larger texels
+constexpr float kMinValue = 1e-7F;
+constexpr double kTail = 1e-4; // truncation of the series: kMinValue of a millimetre
 
-// What is left of a variance `half` * 2 [m^2] once the splines have had their share.
-Spread spreadOf(const TexelMetric& metric, double half, int side) {
+// Returns the remaining variance after that of the splines, from a variance of `half` * 2 [m^2].
+DiffusionTensor diffusionTensor(const TexelMetric& metric, double half, int side) {
   if (!(metric.uu > 0)) return {};
   const double scale = half / (side * side * static_cast<double>(metric.determinant()));
   const double own = side > 1 ? 0.25 : 0;
@@ -51,7 +51,7 @@ double meanTexel(const TriangleMesh& mesh, const CornerUvs& uvs, const TexelMap&
   return std::sqrt(area(mesh) / std::max(texels, 1.0));
 }
 
-// Texels a side of the cells: as large as the deviation allows where texels are large.
+// Returns the cells' side [texels]: as large as the deviation allows where texels are large.
 int cellSide(const TriangleMesh& mesh, const std::vector<TexelMetric>& metrics, double deviation) {
   std::vector<std::pair<float, double>> by_size; // longest texel, area
   double all = 0;
@@ -71,18 +71,18 @@ int cellSide(const TriangleMesh& mesh, const std::vector<TexelMetric>& metrics, 
     if (larger > kLargest * all) break;
   }
   int side = 1;
-  while (side < kTileSide && deviation >= kLeastDeviation * 2 * side * longest) side *= 2;
+  while (side < kTileSide && deviation >= kMinDeviation * 2 * side * longest) side *= 2;
   return side;
 }
 
-// For the stencil's error of fourth order, k^4 / 12 of a cell, and that of the splines.
-double bendOf(double half_variance, int side) {
+// Corrects the fourth-order errors of the stencil (k^4 / 12 of a cell) and of the splines.
+double fourthOrderTerm(double half_variance, int side) {
   const double k = std::max(half_variance, 1e-3);
   return std::max(1 / (12 * k) - (side > 1 ? 1 / (640 * k * k) : 0), 0.0);
 }
 
-// c_n of sum c_n T_n(lambda / rate - 1), until kTail, for what a flow for the time 1 does to waves:
-// exp(-lambda - bend lambda^2) on [0, 2 rate]. Keeps constants.
+// Returns c_n of sum c_n T_n(lambda / rate - 1), up to kTail, for the decay of waves by diffusion
+// for unit time, exp(-lambda - bend lambda^2) on [0, 2 rate]. Preserves constants.
 std::vector<double> series(double rate, double bend) {
   const auto count = static_cast<std::size_t>(32 + 4 * std::sqrt(100 * rate));
   std::vector<double> value(count), weight;
@@ -110,8 +110,9 @@ TexelBox joined(const TexelBox& a, const TexelBox& b) {
   return {std::min(a.i0, b.i0), std::min(a.j0, b.j0), std::max(a.i1, b.i1), std::max(a.j1, b.j1)};
 }
 
-// Boxes that cost less together than each by itself, once grown, as one.
-std::vector<TexelBox> gathered(const std::vector<TexelBox>& boxes, int by, const TexelBox& image) {
+// Merges boxes that cost less together than separately after growing.
+std::vector<TexelBox> mergedBoxes(const std::vector<TexelBox>& boxes, int by,
+                                  const TexelBox& image) {
   const auto cost = [&](const TexelBox& box) {
     const TexelBox all = grown(box, by, image);
     return static_cast<std::int64_t>(all.i1 - all.i0) * (all.j1 - all.j0);
@@ -133,7 +134,7 @@ std::vector<TexelBox> gathered(const std::vector<TexelBox>& boxes, int by, const
   return result;
 }
 
-// next = a L now - b now - c before, for `count` texels of a row.
+// Computes next = a L now - b now - c before for `count` texels of a row.
 struct Recurrence {
   float a, b, c;
 };
@@ -142,22 +143,23 @@ void stepRow(const std::array<const float*, kParts>& links, std::size_t up, std:
              const Recurrence& step) {
   const float* __restrict east = links[kEast];
   const float* __restrict north = links[kNorth];
-  const float* __restrict rising = links[kRising];
-  const float* __restrict falling = links[kFalling];
+  const float* __restrict diagonal = links[kDiagonal];
+  const float* __restrict anti_diagonal = links[kAntiDiagonal];
   const float* __restrict per_area = links[kPerArea];
   const auto row = static_cast<std::ptrdiff_t>(up);
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(count); ++n) {
     const float v = now[n];
     float flow = east[n] * (v - now[n + 1]) + east[n - 1] * (v - now[n - 1]);
     flow += north[n] * (v - now[n + row]) + north[n - row] * (v - now[n - row]);
-    flow += rising[n] * (v - now[n + row + 1]) + rising[n - row - 1] * (v - now[n - row - 1]);
-    flow += falling[n] * (v - now[n + row - 1]) + falling[n - row + 1] * (v - now[n - row + 1]);
+    flow += diagonal[n] * (v - now[n + row + 1]) + diagonal[n - row - 1] * (v - now[n - row - 1]);
+    flow += anti_diagonal[n] * (v - now[n + row - 1]) +
+            anti_diagonal[n - row + 1] * (v - now[n - row + 1]);
     next[n] = step.a * (per_area[n] * flow) - step.b * v - step.c * before[n];
   }
 }
 
 template <class Body> void inRows(const TexelBox& box, const Body& body) {
-  constexpr int kTexels = 1 << 14; // less is not worth a thread
+  constexpr int kTexels = 1 << 14; // smaller work does not pay for a thread
   const int rows = std::max(1, kTexels / std::max(1, width(box)));
   if (box.j1 - box.j0 <= rows) {
     for (int j = box.j0; j < box.j1; ++j) body(j);
@@ -176,10 +178,9 @@ struct ReliefSmoother::Impl {
   std::shared_ptr<const CornerUvs> uvs;
   std::shared_ptr<const TexelMap> texels;
   std::vector<TexelMetric> metrics;
-  int side = 1; // of a cell [texels]
+  int side = 1; // side of a cell [texels]
   double rate = 0;
-  // exp(-L) by Chebyshev's polynomials on the spectrum [0, 2 rate] of L. Empty: nothing is
-  // smoothed.
+  // Chebyshev coefficients of exp(-L) on the spectrum [0, 2 rate] of L; empty without smoothing.
   std::vector<double> weight;
   mutable std::mutex mutex;
   mutable std::unique_ptr<ReliefCells> cells;
@@ -189,8 +190,8 @@ struct ReliefSmoother::Impl {
   int reach() const { return degree() + 2 * splineReach(); } // [cell]
   TexelBox image() const { return {0, 0, texels->width / side, texels->height / side}; }
 
-  // T_n of the values for n = 0 .. degree(), weighed. Of the cells of `out`; what lies farther off
-  // an `out` by n is of no use n steps before the last.
+  // Sums the weighted Chebyshev terms T_n for the cells of `out`. At step n only cells within
+  // degree() - n of `out` are needed.
   std::vector<float> flow(std::vector<float> before, const ReliefWindow& window,
                           const TexelBox& out) const {
     std::vector<float> result(before.size()), now(before.size()), next(before.size());
@@ -202,7 +203,7 @@ struct ReliefSmoother::Impl {
     for (int j = out.j0; j < out.j1; ++j)
       add(weight[0], before, window.at(out.i0, j), window.at(out.i1, j));
     add(weight[0], before, window.grid(), window.size());
-    // before, now and next are T_(n-2), T_(n-1) and T_n of the values, but at the first step.
+    // before, now and next are T_(n-2), T_(n-1) and T_n, except at the first step.
     for (int n = 1; n <= degree(); ++n) {
       const bool first = n == 1;
       const Recurrence step{static_cast<float>((first ? 1 : 2) / rate), first ? 1.0F : 2.0F,
@@ -240,7 +241,7 @@ struct ReliefSmoother::Impl {
     return result;
   }
 
-  // What the cells of `out` become, into `result`.
+  // Writes the smoothed cells of `out` to `result`.
   void smooth(const TiledImage& relief, const TexelBox& out, TiledImage& result) const {
     const ReliefWindow window = [&] {
       const TexelBox squares = grown(out, reach(), image());
@@ -251,10 +252,10 @@ struct ReliefSmoother::Impl {
       return ReliefWindow(*cells, squares);
     }();
     const std::vector<float> values =
-        flow(window.gathered(relief), window, grown(out, splineReach(), image()));
+        flow(window.restrict(relief), window, grown(out, splineReach(), image()));
     ReliefWindow::TileValues made;
     forTiles(scaled(out, side), kTileSide, [&](const TexelBox& part) {
-      window.spread(values, part, made);
+      window.prolong(values, part, made);
       const std::size_t index = relief.tileOf(part.i0, part.j0);
       const float* source = relief.tile(index);
       const float* held = result.tile(index);
@@ -267,7 +268,7 @@ struct ReliefSmoother::Impl {
             &texels->owner[static_cast<std::size_t>(j) * static_cast<std::size_t>(texels->width) +
                            static_cast<std::size_t>(part.i0)];
         for (std::size_t n = 0; n < count; ++n)
-          row[n] = std::abs(made[at + n]) < kLeastValue ? 0 : made[at + n];
+          row[n] = std::abs(made[at + n]) < kMinValue ? 0 : made[at + n];
         for (std::size_t n = 0; n < count; ++n)
           if (owner[n] < 0) row[n] = source ? source[at + n] : 0;
         if (held) std::copy_n(held + at, count, old.begin());
@@ -288,43 +289,43 @@ ReliefSmoother::ReliefSmoother(std::shared_ptr<const TriangleMesh> mesh,
   Impl& made = *impl_;
   made.metrics = texelMetrics(*mesh, *uvs, texels->width, texels->height);
   made.side = cellSide(*mesh, made.metrics, deviation);
-  // A squeezed texel is taken for a larger one, or it would set the pace for all.
+  // Enlarges very small texels, which would determine the number of steps for all.
   const double least =
-      made.side * std::max(meanTexel(*mesh, *uvs, *texels) / kSqueezed, deviation / kMostTexels);
-  const double most_rate = 2 * deviation * deviation / (least * least);
-  std::vector<Spread> spreads(made.metrics.size());
+      made.side * std::max(meanTexel(*mesh, *uvs, *texels) / kSqueezed, deviation / kMaxTexels);
+  const double max_rate = 2 * deviation * deviation / (least * least);
+  std::vector<DiffusionTensor> tensors(made.metrics.size());
   double mean = 0, faces = 0;
-  for (std::size_t f = 0; f < spreads.size(); ++f) {
-    Spread& spread = spreads[f];
-    spread = spreadOf(made.metrics[f], 0.5 * deviation * deviation, made.side);
-    const double rate = mostRate(spread);
-    const auto less = static_cast<float>(std::min(1.0, most_rate / std::max(rate, 1e-30)));
-    spread = {less * spread.ii, less * spread.ij, less * spread.jj};
-    made.rate = std::max(made.rate, std::min(rate, most_rate));
+  for (std::size_t f = 0; f < tensors.size(); ++f) {
+    DiffusionTensor& tensor = tensors[f];
+    tensor = diffusionTensor(made.metrics[f], 0.5 * deviation * deviation, made.side);
+    const double rate = maxDecayRate(tensor);
+    const auto less = static_cast<float>(std::min(1.0, max_rate / std::max(rate, 1e-30)));
+    tensor = {less * tensor.ii, less * tensor.ij, less * tensor.jj};
+    made.rate = std::max(made.rate, std::min(rate, max_rate));
     const Vec3 a = mesh->corner(f, 1) - mesh->corner(f, 0),
                b = mesh->corner(f, 2) - mesh->corner(f, 0);
     const double own = a.cross(b).norm();
-    mean += own * 0.5 * static_cast<double>(spread.ii + spread.jj);
+    mean += own * 0.5 * static_cast<double>(tensor.ii + tensor.jj);
     faces += own;
   }
-  made.rate *= 1 + 1e-5; // rounding
-  if (made.rate > 1e-6) made.weight = series(made.rate, bendOf(mean / faces, made.side));
+  made.rate *= 1 + 1e-5; // margin for rounding
+  if (made.rate > 1e-6) made.weight = series(made.rate, fourthOrderTerm(mean / faces, made.side));
   made.mesh = std::move(mesh);
   made.uvs = std::move(uvs);
   made.texels = std::move(texels);
   made.cells = std::make_unique<ReliefCells>(*made.mesh, *made.uvs, *made.texels, made.metrics,
-                                             std::move(spreads), made.side);
+                                             std::move(tensors), made.side);
 }
 
 ReliefSmoother::~ReliefSmoother() = default;
 
 TiledImage ReliefSmoother::smoothed(const TiledImage& relief) const {
   const TiledImage none(relief.width(), relief.height(), 1);
-  return resmoothed(none, none, relief);
+  return updateSmoothed(none, none, relief);
 }
 
-TiledImage ReliefSmoother::resmoothed(const TiledImage& result, const TiledImage& before,
-                                      const TiledImage& relief) const {
+TiledImage ReliefSmoother::updateSmoothed(const TiledImage& result, const TiledImage& before,
+                                          const TiledImage& relief) const {
   const TexelMap& texels = *impl_->texels;
   for (const TiledImage* image : {&result, &before, &relief})
     if (image->width() != texels.width || image->height() != texels.height ||
@@ -337,8 +338,8 @@ TiledImage ReliefSmoother::resmoothed(const TiledImage& result, const TiledImage
   for (const TexelBox& box : changedTexels(before, relief))
     squares.push_back(
         {box.i0 / side, box.j0 / side, (box.i1 + side - 1) / side, (box.j1 + side - 1) / side});
-  constexpr int kAtOnce = 512; // squares a side, which bounds the memory
-  for (const TexelBox& box : gathered(squares, 2 * reach, impl_->image()))
+  constexpr int kAtOnce = 512; // [squares a side], bounds the memory
+  for (const TexelBox& box : mergedBoxes(squares, 2 * reach, impl_->image()))
     forTiles(grown(box, reach, impl_->image()), kAtOnce,
              [&](const TexelBox& part) { impl_->smooth(relief, part, made); });
   return made;

@@ -1,10 +1,264 @@
 #include "authoring/relief/relief_window.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 
 namespace patina {
+namespace {
+
+constexpr std::size_t kTexels = kTileSide * kTileSide;
+constexpr std::uint8_t kJoinsEast = 1, kJoinsNorth = 2, kJoinsDiagonal = 4, kJoinsAntiDiagonal = 8;
+
+std::size_t place(int i, int j) {
+  return static_cast<std::size_t>(j * kTileSide + i);
+}
+
+// Connected texels of a square, each part named by its first texel.
+class Parts {
+ public:
+  Parts() { std::iota(first_.begin(), first_.end(), std::int16_t{0}); }
+  std::size_t of(std::size_t texel) {
+    while (static_cast<std::size_t>(first_[texel]) != texel) {
+      const auto up = static_cast<std::size_t>(first_[texel]);
+      first_[texel] = first_[up];
+      texel = up;
+    }
+    return texel;
+  }
+  void join(std::size_t a, std::size_t b) {
+    const std::size_t x = of(a), y = of(b);
+    first_[std::max(x, y)] = static_cast<std::int16_t>(std::min(x, y));
+  }
+
+ private:
+  std::array<std::int16_t, kTexels> first_{};
+};
+
+// Texels connected over the side of a square, as pairs of cells. Two cells are neighbours if each
+// has most of its pairs with the other.
+class Border {
+ public:
+  void add(std::int16_t here, std::int16_t there) {
+    for (Pair& pair : pairs_)
+      if (pair.here == here && pair.there == there) {
+        ++pair.count;
+        return;
+      }
+    pairs_.push_back({here, there, 1});
+  }
+  template <class Visit> void forNeighbours(const Visit& visit) const {
+    for (const Pair& pair : pairs_) {
+      const bool most = std::all_of(pairs_.begin(), pairs_.end(), [&](const Pair& other) {
+        return (other.here != pair.here && other.there != pair.there) || &other == &pair ||
+               other.count < pair.count || (other.count == pair.count && &pair < &other);
+      });
+      if (most) visit(pair.here, pair.there);
+    }
+  }
+  void clear() { pairs_.clear(); }
+
+ private:
+  struct Pair {
+    std::int16_t here, there;
+    int count;
+  };
+  std::vector<Pair> pairs_;
+};
+
+float minDiagonal(const DiffusionTensor& tensor) {
+  return std::min({(tensor.ii + tensor.jj) / 6, tensor.ii, tensor.jj});
+}
+
+} // namespace
+
+Conductance::Conductance(const DiffusionTensor& tensor) {
+  const float both =
+      std::max(std::abs(tensor.ij), std::min({(tensor.ii + tensor.jj) / 6, tensor.ii, tensor.jj}));
+  along_i = std::max(tensor.ii - both, 0.0F);
+  along_j = std::max(tensor.jj - both, 0.0F);
+  diagonal = 0.5F * (both + tensor.ij);
+  anti_diagonal = 0.5F * (both - tensor.ij);
+}
+
+double maxDecayRate(const DiffusionTensor& tensor) {
+  return 2 * static_cast<double>(tensor.ii + tensor.jj - minDiagonal(tensor));
+}
+
+Spline::Spline(int side) {
+  for (int i = 0; i < kTileSide; ++i) {
+    const double u = (i % side + 0.5) / side - 0.5;
+    const auto n = static_cast<std::size_t>(i);
+    weight_[0][n] = static_cast<float>(0.5 * (0.5 - u) * (0.5 - u));
+    weight_[1][n] = static_cast<float>(0.75 - u * u);
+    weight_[2][n] = static_cast<float>(0.5 * (0.5 + u) * (0.5 + u));
+  }
+}
+
+ReliefCells::ReliefCells(const TriangleMesh& mesh, const CornerUvs& uvs, const TexelMap& texels,
+                         const std::vector<TexelMetric>& metrics,
+                         std::vector<DiffusionTensor> tensors, int side)
+    : mesh_(mesh), uvs_(uvs), texels_(texels), metrics_(metrics), tensors_(std::move(tensors)),
+      side_(side), across_(texels.width / kTileSide), along_(texels.height / kTileSide),
+      spline_(side), tiles_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(along_)) {}
+
+std::unique_ptr<CellTile> ReliefCells::made(std::size_t index) const {
+  auto tile = std::make_unique<CellTile>();
+  const int i0 = static_cast<int>(index) % across_ * kTileSide,
+            j0 = static_cast<int>(index) / across_ * kTileSide;
+  const TexelRows rows(mesh_, uvs_, texels_, metrics_);
+  std::vector<TexelOnSurface> here(kTileSide + 2), above(kTileSide + 2);
+  std::array<std::int32_t, kTexels> face;
+  rows.read(i0 - 1, j0, here);
+  for (int j = 0; j < kTileSide; ++j, std::swap(here, above)) {
+    rows.read(i0 - 1, j0 + j + 1, above);
+    for (int i = 0; i < kTileSide; ++i) {
+      const auto n = static_cast<std::size_t>(i) + 1;
+      const TexelOnSurface& own = here[n];
+      face[place(i, j)] = own.shown ? texels_.ownerAt(i0 + i, j0 + j) : -1;
+      std::uint8_t joined = 0;
+      if (TexelRows::joined(own, here[n + 1], 1, 0)) joined |= kJoinsEast;
+      if (TexelRows::joined(own, above[n], 0, 1)) joined |= kJoinsNorth;
+      if (TexelRows::joined(own, above[n + 1], 1, 1)) joined |= kJoinsDiagonal;
+      if (TexelRows::joined(own, above[n - 1], -1, 1)) joined |= kJoinsAntiDiagonal;
+      tile->joined[place(i, j)] = joined;
+    }
+  }
+
+  Parts parts;
+  const auto sameSquare = [&](int a, int b) { return a / side_ == b / side_; };
+  for (int j = 0; side_ > 1 && j < kTileSide; ++j)
+    for (int i = 0; i < kTileSide; ++i) {
+      const std::uint8_t joined = tile->joined[place(i, j)];
+      const bool up = j + 1 < kTileSide && sameSquare(j, j + 1);
+      const bool right = i + 1 < kTileSide && sameSquare(i, i + 1);
+      const bool left = i > 0 && sameSquare(i, i - 1);
+      if (right && (joined & kJoinsEast)) parts.join(place(i, j), place(i + 1, j));
+      if (up && (joined & kJoinsNorth)) parts.join(place(i, j), place(i, j + 1));
+      if (up && right && (joined & kJoinsDiagonal)) parts.join(place(i, j), place(i + 1, j + 1));
+      if (up && left && (joined & kJoinsAntiDiagonal)) parts.join(place(i, j), place(i - 1, j + 1));
+    }
+  std::array<std::int16_t, kTexels> count{};
+  for (std::size_t t = 0; t < kTexels; ++t)
+    if (face[t] >= 0) ++count[parts.of(t)];
+
+  std::array<std::int16_t, kTexels> cell_at; // indexed by the first texel of a part
+  const auto squares = static_cast<std::size_t>(this->squares() * this->squares());
+  tile->cells.resize(squares);
+  for (std::size_t s = 0; s < squares; ++s) {
+    const int i1 = static_cast<int>(s) % this->squares() * side_,
+              j1 = static_cast<int>(s) / this->squares() * side_;
+    const auto forFirsts = [&](const auto& visit) {
+      for (int j = j1; j < j1 + side_; ++j)
+        for (int i = i1; i < i1 + side_; ++i)
+          if (count[place(i, j)] > 0) visit(place(i, j));
+    };
+    std::size_t largest = kTexels;
+    forFirsts([&](std::size_t t) {
+      if (largest == kTexels || count[t] > count[largest]) largest = t;
+    });
+    forFirsts([&](std::size_t t) {
+      cell_at[t] = static_cast<std::int16_t>(t == largest ? s : tile->cells.size());
+      if (t == largest) return;
+      tile->cells.emplace_back();
+      tile->square.push_back(static_cast<std::int16_t>(s));
+    });
+  }
+  std::vector<DiffusionTensor> tensors(tile->cells.size());
+  for (std::size_t t = 0; t < kTexels; ++t) {
+    tile->cell_of[t] = -1;
+    if (face[t] < 0) continue;
+    tile->cell_of[t] = cell_at[parts.of(t)];
+    const auto c = static_cast<std::size_t>(tile->cell_of[t]);
+    const auto f = static_cast<std::size_t>(face[t]);
+    ++tile->cells[c].texels;
+    tile->cells[c].area += std::sqrt(metrics_[f].determinant());
+    tensors[c].ii += tensors_[f].ii;
+    tensors[c].ij += tensors_[f].ij;
+    tensors[c].jj += tensors_[f].jj;
+  }
+  for (std::size_t c = 0; c < tensors.size(); ++c) {
+    Cell& cell = tile->cells[c];
+    if (cell.texels == 0) continue;
+    const float factor = cell.area / static_cast<float>(cell.texels);
+    const DiffusionTensor& sum = tensors[c];
+    cell.conductance = Conductance({factor * sum.ii, factor * sum.ij, factor * sum.jj});
+  }
+  return tile;
+}
+
+void ReliefCells::link(std::size_t index) {
+  CellTile& tile = *tiles_[index];
+  const int ti = static_cast<int>(index) % across_, tj = static_cast<int>(index) / across_;
+  Border border;
+  // Links over the line between texels `low` and `low + step` for `side` texels along the other
+  // axis; at least one side of the line lies in this tile.
+  const auto over = [&](const CellTile& from, const CellTile& to, bool east, int line, int first) {
+    border.clear();
+    for (int n = first; n < first + side_; ++n) {
+      const int end = (line + 1) % kTileSide;
+      const std::size_t a = east ? place(line, n) : place(n, line),
+                        b = east ? place(end, n) : place(n, end);
+      if (from.joined[a] & (east ? kJoinsEast : kJoinsNorth))
+        border.add(from.cell_of[a], to.cell_of[b]);
+    }
+    border.forNeighbours([&](std::int16_t a, std::int16_t b) {
+      if (&from == &tile)
+        tile.cells[static_cast<std::size_t>(a)].next[east ? kToEast : kToNorth] = b;
+      if (&to == &tile) tile.cells[static_cast<std::size_t>(b)].next[east ? kToWest : kToSouth] = a;
+    });
+  };
+  const auto width = static_cast<std::size_t>(across_);
+  for (int first = 0; first < kTileSide; first += side_) {
+    for (int line = side_ - 1; line + 1 < kTileSide; line += side_) {
+      over(tile, tile, true, line, first);
+      over(tile, tile, false, line, first);
+    }
+    constexpr int kLast = kTileSide - 1;
+    if (ti + 1 < across_) over(tile, *tiles_[index + 1], true, kLast, first);
+    if (tj + 1 < along_) over(tile, *tiles_[index + width], false, kLast, first);
+    if (ti > 0) over(*tiles_[index - 1], tile, true, kLast, first);
+    if (tj > 0) over(*tiles_[index - width], tile, false, kLast, first);
+  }
+  const int squares = this->squares();
+  for (int square = 0; square < squares * squares; ++square) {
+    Cell& cell = tile.cells[static_cast<std::size_t>(square)];
+    const int i = square % squares, j = square / squares, last = squares - 1;
+    const std::array<int, 4> beside{
+        i < last ? square + 1 : square - last, j < last ? square + squares : i,
+        i > 0 ? square - 1 : square + last, j > 0 ? square - squares : last * squares + i};
+    for (std::size_t way = 0; way < 4; ++way)
+      if (cell.next[way] == beside[way]) cell.plain |= static_cast<std::uint8_t>(1U << way);
+  }
+  tile.linked = true;
+}
+
+void ReliefCells::make(const TexelBox& tiles) {
+  std::vector<std::size_t> missing, unlinked;
+  for (int j = std::max(tiles.j0 - 1, 0); j < std::min(tiles.j1 + 1, along_); ++j)
+    for (int i = std::max(tiles.i0 - 1, 0); i < std::min(tiles.i1 + 1, across_); ++i) {
+      const auto index = static_cast<std::size_t>(j) * static_cast<std::size_t>(across_) +
+                         static_cast<std::size_t>(i);
+      if (!tiles_[index]) missing.push_back(index);
+      if (i >= tiles.i0 && i < tiles.i1 && j >= tiles.j0 && j < tiles.j1 &&
+          !(tiles_[index] && tiles_[index]->linked))
+        unlinked.push_back(index);
+    }
+  tbb::parallel_for(std::size_t{0}, missing.size(),
+                    [&](std::size_t n) { tiles_[missing[n]] = made(missing[n]); });
+  tbb::parallel_for(std::size_t{0}, unlinked.size(), [&](std::size_t n) { link(unlinked[n]); });
+}
+
+std::size_t ReliefCells::bytes() const {
+  std::size_t sum = tensors_.size() * sizeof(DiffusionTensor);
+  for (const auto& tile : tiles_)
+    if (tile) sum += sizeof(CellTile) + tile->cells.size() * sizeof(Cell);
+  return sum;
+}
+
 namespace {
 
 constexpr float kNothing = 0;
@@ -65,7 +319,7 @@ bool ReliefWindow::isIn(const TilePart& part, std::size_t cell) const {
   return i >= part.squares.i0 && i < part.squares.i1 && j >= part.squares.j0 && j < part.squares.j1;
 }
 
-// visit(cell, place) of those that are shown.
+// Calls visit(cell, place) for the cells in use.
 template <class Visit> void ReliefWindow::forCells(const TilePart& part, const Visit& visit) const {
   const CellTile& tile = cells_.tile(part.tile);
   const int side = cells_.squares();
@@ -82,7 +336,7 @@ void ReliefWindow::readNext(const TilePart& part, std::vector<Conductance>& cond
   const CellTile& tile = cells_.tile(part.tile);
   const int side = cells_.squares();
   const auto in_tile = static_cast<std::size_t>(side * side);
-  // The tile where a neighbour of a cell lies: its own, or the next one.
+  // Finds the tile of a cell's neighbour: its own or the next one.
   const auto wide = static_cast<std::size_t>(width(tile_box_));
   const auto own = static_cast<std::size_t>(&part - tiles_.data());
   const int ti = part.squares.i0 / side, tj = part.squares.j0 / side;
@@ -124,7 +378,7 @@ void ReliefWindow::readNext(const TilePart& part, std::vector<Conductance>& cond
   }
 }
 
-// The lesser of two conductances: the cells' own rates bound the spectrum.
+// Uses the smaller of two conductances, so that the cells' own rates bound the spectrum.
 void ReliefWindow::join(const TilePart& part, const std::vector<Conductance>& conductances,
                         std::vector<Link>& links) {
   forCells(part, [&](std::size_t, std::size_t place) {
@@ -141,14 +395,14 @@ void ReliefWindow::join(const TilePart& part, const std::vector<Conductance>& co
     link(kEast, east, place + 1, &Conductance::along_i);
     link(kNorth, next_[place][kToNorth], place + stride_, &Conductance::along_j);
     if (east != place && next_[east][kToNorth] != east)
-      link(kRising, next_[east][kToNorth], place + stride_ + 1, &Conductance::rising);
+      link(kDiagonal, next_[east][kToNorth], place + stride_ + 1, &Conductance::diagonal);
     if (west != place && next_[west][kToNorth] != west)
-      link(kFalling, next_[west][kToNorth], place + stride_ - 1, &Conductance::falling);
+      link(kAntiDiagonal, next_[west][kToNorth], place + stride_ - 1, &Conductance::anti_diagonal);
   });
 }
 
-// The nine places about one, i fastest, as far as there are neighbours: what would go on beyond a
-// chart's edge stays at it.
+// Returns the 3 x 3 neighbourhood, i fastest. A missing neighbour is replaced by the cell itself,
+// which keeps the flow inside the chart.
 std::array<std::size_t, 9> ReliefWindow::about(std::size_t place) const {
   std::array<std::size_t, 9> places;
   const std::array<std::size_t, 3> row{next_[place][kToWest], place, next_[place][kToEast]};
@@ -160,7 +414,7 @@ std::array<std::size_t, 9> ReliefWindow::about(std::size_t place) const {
   return places;
 }
 
-// Of the values of a cell's texels and of 1, by the spline's weights for the cells about: i
+// Moments of a cell's texel values and of 1, by the spline weights for the neighbouring cells, i
 // fastest.
 struct ReliefWindow::Moments {
   std::array<float, 9> value{}, unit{};
@@ -179,7 +433,7 @@ void ReliefWindow::takeMoments(const TilePart& part, const TiledImage& image,
   bool with_parts = tile.cells.size() > static_cast<std::size_t>(squares * squares);
   for (int sj = part.squares.j0; sj < part.squares.j1; ++sj) {
     const int j0 = sj % squares * side;
-    // Columns first, all of a row at once.
+    // Columns first, a whole row at once.
     std::array<std::array<float, kTileSide>, 3> column{};
     for (int j = j0; values && j < j0 + side; ++j) {
       const float* row = values + j * kTileSide;
@@ -233,7 +487,7 @@ void ReliefWindow::takeMoments(const TilePart& part, const TiledImage& image,
     }
 }
 
-std::vector<float> ReliefWindow::gathered(const TiledImage& image) const {
+std::vector<float> ReliefWindow::restrict(const TiledImage& image) const {
   std::vector<float> values(size());
   if (cells_.side() == 1) {
     for (const TilePart& part : tiles_)
@@ -261,8 +515,8 @@ std::vector<float> ReliefWindow::gathered(const TiledImage& image) const {
   return values;
 }
 
-void ReliefWindow::spread(const std::vector<float>& values, const TexelBox& part,
-                          TileValues& made) const {
+void ReliefWindow::prolong(const std::vector<float>& values, const TexelBox& part,
+                           TileValues& made) const {
   const int side = cells_.side(), squares = cells_.squares();
   if (side == 1) {
     for (int j = part.j0; j < part.j1; ++j)
@@ -277,7 +531,7 @@ void ReliefWindow::spread(const std::vector<float>& values, const TexelBox& part
   const TexelBox box{part.i0 / side, part.j0 / side, part.i1 / side, part.j1 / side};
   bool with_parts = false;
   for (int sj = box.j0; sj < box.j1; ++sj) {
-    std::array<std::array<float, kTileSide>, 3> row{}; // along i, by the squares below, here, above
+    std::array<std::array<float, kTileSide>, 3> row{}; // below, here, above
     for (int si = box.i0; si < box.i1; ++si) {
       const auto cell = static_cast<std::size_t>(sj % squares * squares + si % squares);
       with_parts = with_parts || tile.cells[cell].texels < side * side;

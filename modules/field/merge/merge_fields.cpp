@@ -7,7 +7,73 @@
 
 #include <tbb/parallel_for.h>
 
+#include "core/error.h"
+#include "core/numbers.h"
+#include "field/store/face_block.h"
+
 namespace patina {
+namespace {
+
+int blockOf(double node) {
+  return static_cast<int>(std::floor(node / kBlockSide));
+}
+
+} // namespace
+
+void BlockBox::extend(const BlockBox& other) {
+  if (other.isEmpty()) return;
+  if (isEmpty()) {
+    *this = other;
+    return;
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    low[a] = std::min(low[a], other.low[a]);
+    high[a] = std::max(high[a], other.high[a]);
+  }
+}
+
+BlockBox blocksAround(const BlockLattice& lattice, const Box3& box, double band) {
+  constexpr double kSlack = 1e-6; // absorbs the rounding of the division
+  BlockBox blocks;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double low = (box.min()[axis] - lattice.anchor[axis]) / lattice.voxel - band;
+    const double high = (box.max()[axis] - lattice.anchor[axis]) / lattice.voxel + band;
+    if (!(high - low < kMaxNodes && std::abs(low) < 1e9))
+      throw Error("field: an object needs " + formatNumber(std::ceil(high - low)) + " voxels of " +
+                  formatLength(lattice.voxel) + " on a side; the maximum is " +
+                  std::to_string(kMaxNodes - 1) + "; choose a larger voxel");
+    blocks.low[a] = blockOf(std::floor(low + kSlack));
+    blocks.high[a] = blockOf(std::ceil(high - kSlack)) + 1;
+  }
+  return blocks;
+}
+
+FieldGrid gridOf(const BlockLattice& lattice, const BlockBox& blocks) {
+  FieldGrid grid;
+  grid.voxel = lattice.voxel;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    grid.origin[axis] = lattice.anchor[axis] + lattice.voxel * kBlockSide * blocks.low[a];
+    grid.nodes[a] = kBlockSide * (blocks.high[a] - blocks.low[a]);
+    if (grid.nodes[a] > kMaxNodes)
+      throw Error("field: the scene needs " + std::to_string(grid.nodes[a]) + " voxels of " +
+                  formatLength(lattice.voxel) + " on a side; the maximum is " +
+                  std::to_string(kMaxNodes) + "; choose a larger voxel or move objects closer");
+  }
+  return grid;
+}
+
+std::array<int, 3> firstBlock(const BlockLattice& lattice, const FieldGrid& grid) {
+  std::array<int, 3> first{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    first[a] = static_cast<int>(
+        std::lround((grid.origin[axis] - lattice.anchor[axis]) / (kBlockSide * lattice.voxel)));
+  }
+  return first;
+}
+
 namespace {
 
 std::size_t linear(const Index3& at, const Index3& n) {
@@ -24,18 +90,18 @@ template <class Visit> void forBox(const Index3& low, const Index3& high, const 
       for (int x = low[0]; x < high[0]; ++x) visit(Index3{x, y, z});
 }
 
-// The blocks that the parts store at one place.
+// Blocks that the parts store at one position.
 struct Share {
   std::int32_t part, slot;
 };
 struct Place {
   std::vector<Share> shares; // ascending parts
-  bool inside = false;       // deeper than the band in some part
+  bool inside = false;       // a part is deeper than the band there
 };
 
 std::vector<Place> places(std::span<const FieldPart> parts, const SurfaceField& merged,
                           const Index3& low) {
-  std::vector<Place> result(merged.top.size());
+  std::vector<Place> result(merged.block_index.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const SurfaceField& field = *parts[p].field;
     const Index3 shift = minus(parts[p].first_block, low);
@@ -54,7 +120,7 @@ std::vector<Place> places(std::span<const FieldPart> parts, const SurfaceField& 
 }
 
 struct Block {
-  std::shared_ptr<const DistanceBlock> distance; // null: all of it lies deeper than the band
+  std::shared_ptr<const DistanceBlock> distance; // null: entirely deeper than the band
   std::shared_ptr<const FaceBlock> face;
 };
 
@@ -68,7 +134,7 @@ Block shared(const FieldPart& part, std::int32_t slot) {
   return block;
 }
 
-// +-kBeyondBand lie beyond every stored value, so that min does with them what it must.
+// The minimum also works for +-kBackground, which lie beyond every stored value.
 Block least(std::span<const FieldPart> parts, const std::vector<Share>& shares, bool with_faces) {
   std::vector<DistanceNodes> held(shares.size());
   for (std::size_t s = 0; s < shares.size(); ++s)
@@ -87,7 +153,7 @@ Block least(std::span<const FieldPart> parts, const std::vector<Share>& shares, 
         owner = &shares[s];
       }
     distance.phi[n] = phi;
-    const bool stored = std::abs(phi) < kBeyondBand;
+    const bool stored = std::abs(phi) < kBackground;
     any = any || stored;
     if (!with_faces) continue;
     faces.face[n] = -1;
@@ -101,7 +167,7 @@ Block least(std::span<const FieldPart> parts, const std::vector<Share>& shares, 
           with_faces ? std::make_shared<const FaceBlock>(faces) : nullptr};
 }
 
-// Distance [voxel] from a point of the part's grid to where its surface can be: a lower bound.
+// Returns a lower bound of the distance [voxel] from a point of the part's grid to its surface.
 double beyondBox(const SurfaceField& field, const Vec3& q) {
   Vec3 out;
   for (int a = 0; a < 3; ++a) {
@@ -111,7 +177,7 @@ double beyondBox(const SurfaceField& field, const Vec3& q) {
   return out.norm();
 }
 
-CoarseNode leastCoarse(std::span<const FieldPart> parts, const Index3& at) {
+CoarseNode minCoarse(std::span<const FieldPart> parts, const Index3& at) {
   CoarseNode node{std::numeric_limits<float>::infinity(), 0, 0, 0};
   float bound = node.phi;
   for (const FieldPart& part : parts) {
@@ -159,7 +225,8 @@ SurfaceField mergeFields(std::span<const FieldPart> parts, const BlockLattice& l
   merged.grid = gridOf(lattice, box);
   merged.band = parts[0].field->band;
   merged.blocks = minus(box.high, box.low);
-  merged.top.assign(linear({0, 0, merged.blocks[2]}, merged.blocks), SurfaceField::kOutside);
+  merged.block_index.assign(linear({0, 0, merged.blocks[2]}, merged.blocks),
+                            SurfaceField::kOutside);
 
   const std::vector<Place> all = places(parts, merged, box.low);
   std::vector<Block> blocks(all.size());
@@ -175,12 +242,12 @@ SurfaceField mergeFields(std::span<const FieldPart> parts, const BlockLattice& l
   forBox({0, 0, 0}, merged.blocks, [&](const Index3& at) {
     Block& block = blocks[i];
     if (block.distance) {
-      merged.top[i] = static_cast<std::int32_t>(merged.block_at.size());
+      merged.block_index[i] = static_cast<std::int32_t>(merged.block_at.size());
       merged.block_at.push_back(at);
       merged.distance.push_back(std::move(block.distance));
       if (with_faces) merged.face.push_back(std::move(block.face));
     } else if (all[i].inside || !all[i].shares.empty()) {
-      merged.top[i] = SurfaceField::kInside;
+      merged.block_index[i] = SurfaceField::kInside;
     }
     ++i;
   });
@@ -191,14 +258,14 @@ SurfaceField mergeFields(std::span<const FieldPart> parts, const BlockLattice& l
   tbb::parallel_for(0, corners[2], [&](int z) {
     forBox({0, 0, z}, {corners[0], corners[1], z + 1}, [&](const Index3& at) {
       merged.coarse[linear(at, corners)] =
-          leastCoarse(parts, {at[0] + box.low[0], at[1] + box.low[1], at[2] + box.low[2]});
+          minCoarse(parts, {at[0] + box.low[0], at[1] + box.low[1], at[2] + box.low[2]});
     });
   });
   return merged;
 }
 
 double phiOfPart(const FieldPart& part, const NodeReader& nodes, const Vec3& q) {
-  constexpr double kCompleteTo = 1.75; // voxels before the band's end: all nodes about are stored
+  constexpr double kCompleteTo = 1.75; // [voxel] from the band's end; beyond it cells are complete
   const SurfaceField& field = *part.field;
   const Vec3 in =
       q - kBlockSide * Vec3(part.first_block[0], part.first_block[1], part.first_block[2]);
@@ -210,13 +277,13 @@ double phiOfPart(const FieldPart& part, const NodeReader& nodes, const Vec3& q) 
     cell[a] = std::min(static_cast<int>(x), field.grid.nodes[a] - 2);
     corner[a] = static_cast<int>(std::lround(x / kBlockSide));
   }
-  double sum = 0, sign = 1; // of any node: a surface between two would be in the band
+  double sum = 0, sign = 1; // sign of any node: a surface between two would be in the band
   bool complete = true;
   for (int c = 0; c < 8; ++c) {
     const Vec3 node(cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2));
     const auto phi = static_cast<double>(nodes.phiAt(
         static_cast<int>(node[0]), static_cast<int>(node[1]), static_cast<int>(node[2])));
-    complete = complete && std::abs(phi) < static_cast<double>(kBeyondBand);
+    complete = complete && std::abs(phi) < static_cast<double>(kBackground);
     sum += phi * (Vec3::Ones() - (in - node).cwiseAbs()).prod();
     sign = std::copysign(1, phi);
   }

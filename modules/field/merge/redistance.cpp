@@ -8,9 +8,9 @@
 
 #include <tbb/parallel_for.h>
 
-#include "field/build/plate.h"
+#include "field/construction/thickened_sheet.h"
 #include "field/merge/union_surface.h"
-#include "geometry/mesh/joint_mesh.h"
+#include "geometry/mesh/combined_mesh.h"
 #include "geometry/tree/triangle_tree.h"
 
 namespace patina {
@@ -46,7 +46,7 @@ class Redistancer {
   }
 
  private:
-  // Whether two parts or more hold the block; of block corners each has one more along an axis.
+  // Returns true if two or more parts store the block; more = 1 counts block corners.
   bool overlaps(const Index3& block, int more) const {
     int count = 0;
     for (const FieldPart& part : parts_) {
@@ -64,7 +64,7 @@ class Redistancer {
     return w[0] * a + w[1] * b + w[2] * c;
   }
 
-  // False if no node stays within the band.
+  // Returns false if no node remains within the band.
   bool keep(std::size_t slot) {
     const FaceBlock& old_faces = *merged_.face[slot];
     DistanceNodes distance;
@@ -78,17 +78,17 @@ class Redistancer {
       const Index3 at = BlockNode{merged_.block_at[slot], n}.at();
       const Vec3 p = merged_.grid.toWorld(Vec3(at[0], at[1], at[2]));
       const Vec3 nearest = footOn(face, p);
-      const bool at_cap = nearsCap(distance.phi[n], (nearest - p).norm() / lattice_.voxel);
+      const bool at_cap = isClosestToCap(distance.phi[n], (nearest - p).norm() / lattice_.voxel);
       const Vec3 foot = (nearest - lattice_.anchor) / lattice_.voxel;
       if (!at_cap &&
-          !isHidden(parts_, nodes_, partOfFace(parts_, face, &FieldPart::first_face), foot))
+          !isHidden(parts_, nodes_, objectOfFace(parts_, face, &FieldPart::first_face), foot))
         continue;
       const auto found = tree_.closestPointWithin(p, merged_.band * lattice_.voxel, warm);
       const float phi =
           found ? -static_cast<float>(std::min(found->distance / lattice_.voxel, merged_.band))
-                : -kBeyondBand;
-      // Min is a lower bound of the depth. Of a cap only the cut one is known, and the same but for
-      // its rounding where nothing hides it.
+                : -kBackground;
+      // The minimum over the parts is a lower bound of the depth. Caps are stored trimmed, which
+      // equals the full cap up to rounding if no other part covers it.
       const auto known = static_cast<double>(distance.phi[n]);
       if (!(static_cast<double>(phi) < known - (at_cap ? kSame : 0))) continue;
       ++count;
@@ -126,13 +126,13 @@ class Redistancer {
     });
   }
 
-  // What holds nothing of the band any more is inside.
+  // Blocks without nodes in the band become inside blocks.
   void dropBlocks(const std::vector<std::uint8_t>& gone) {
     SurfaceField& field = result_.field;
     std::size_t kept = 0;
     for (std::size_t slot = 0; slot < gone.size(); ++slot) {
       const Index3 at = field.block_at[slot];
-      std::int32_t& top = field.top[static_cast<std::size_t>(
+      std::int32_t& top = field.block_index[static_cast<std::size_t>(
           (at[2] * field.blocks[1] + at[1]) * field.blocks[0] + at[0])];
       if (gone[slot]) {
         top = SurfaceField::kInside;

@@ -6,18 +6,18 @@
 
 #include <tbb/parallel_for.h>
 
-#include "field/build/plate.h"
-#include "geometry/mesh/joint_mesh.h"
+#include "field/construction/thickened_sheet.h"
+#include "geometry/mesh/combined_mesh.h"
 #include "geometry/mesh/mesh_report.h"
 
 namespace patina {
 namespace {
 
-using Corners = std::array<Vec3, 3>; // grid coordinates of the lattice
+using Corners = std::array<Vec3, 3>; // in grid coordinates of the lattice
 using Pieces = std::vector<Corners>;
 
 constexpr double kLargestPiece = 1; // [voxel]
-// phi is 1-Lipschitz, but read between nodes it is not exact.
+// phi is 1-Lipschitz, but values interpolated between nodes are not exact.
 constexpr double kAllowance = 0.5; // [voxel]
 
 Box3 boxOf(const FieldPart& part) {
@@ -32,7 +32,7 @@ Vec3 between(const Vec3& a, double fa, const Vec3& b, double fb) {
   return a + fa / (fa - fb) * (b - a);
 }
 
-// What is left of a small triangle where f >= 0, f linear between the corners.
+// Returns the pieces of a small triangle with f >= 0, for f linear between the corners.
 void cut(const Corners& t, const std::array<double, 3>& f, Pieces& left) {
   std::array<Vec3, 4> polygon;
   std::size_t count = 0;
@@ -75,7 +75,7 @@ void outsideOf(const FieldPart& part, const NodeReader& nodes, const Corners& tr
   }
 }
 
-// Gathers of each mesh what no other part hides.
+// Collects the pieces of each mesh that no other part hides.
 class VisibleTriangles {
  public:
   VisibleTriangles(std::span<const FieldPart> parts, const BlockLattice& lattice,
@@ -84,7 +84,7 @@ class VisibleTriangles {
     for (const FieldPart& part : parts) boxes_.push_back(boxOf(part));
   }
 
-  // faceOf(triangle of the mesh): its face of the joint mesh.
+  // faceOf(triangle of the mesh) is its face in the combined mesh.
   template <class FaceOf> void add(const TriangleMesh& mesh, const FaceOf& faceOf) {
     const std::vector<std::int32_t> usable = usableTriangles(mesh);
     std::vector<Pieces> visible(usable.size());
@@ -109,7 +109,7 @@ class VisibleTriangles {
 
  private:
   Pieces visibleOf(const TriangleMesh& mesh, std::int32_t triangle, std::int32_t face) const {
-    const auto owner = static_cast<std::size_t>(partOfFace(parts_, face, &FieldPart::first_face));
+    const auto owner = static_cast<std::size_t>(objectOfFace(parts_, face, &FieldPart::first_face));
     Corners t;
     Box3 box;
     for (int c = 0; c < 3; ++c) {

@@ -1,4 +1,4 @@
-// The surface of a union: of each object's triangles what no other object hides (F9).
+// Surface of a union: the pieces of each object's triangles that no other object hides (F9).
 #pragma once
 
 #include <cstdint>
@@ -12,30 +12,30 @@
 
 namespace patina {
 
-// A point is hidden by another part that it lies deeper in than this [voxel]: surfaces that merely
-// coincide stay.
+// A part hides points that are deeper inside it than this [voxel]; coinciding surfaces are kept.
 inline constexpr double kHiddenFrom = 0.02;
 
-// Of each part's field.
+// Returns a reader for each part's field.
 std::deque<NodeReader> nodesOf(std::span<const FieldPart> parts);
 
-// Whether a point that belongs to `owner` is hidden; `nodes` are those of the parts. q in grid
+// Returns true if a point of part `owner` is hidden; `nodes` read the parts' fields. q is in grid
 // coordinates of the lattice.
 bool isHidden(std::span<const FieldPart> parts, const std::deque<NodeReader>& nodes,
               std::int32_t owner, const Vec3& q);
 
 struct UnionSurface {
   TriangleMesh mesh;              // corners are not shared
-  std::vector<std::int32_t> face; // by triangle: of the joint mesh
+  std::vector<std::int32_t> face; // face in the combined mesh of each triangle
 };
 
-// Triangles that enter another part are cut there, to O(h^2) of a cut: pieces of at most a voxel,
-// each cut straight. `joint` holds the parts' meshes one after another, in the world; degenerate
-// and non-finite triangles are left out. Parallel; polls `progress` and throws Cancelled.
+// Cuts triangles where they enter another part, with an error of O(h^2): in pieces of at most a
+// voxel, each cut straight. `joint` holds the parts' meshes one after another, in the world;
+// degenerate and non-finite triangles are left out. Parallel; polls `progress` and throws
+// Cancelled.
 UnionSurface unionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
                           const TriangleMesh& joint, const Progress& progress);
 
-// The same with the backs and the sides of the parts' plates.
+// The same, with the caps of the parts' sheets.
 UnionSurface closedUnionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
                                 const TriangleMesh& joint, const Progress& progress);
 

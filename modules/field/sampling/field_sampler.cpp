@@ -25,12 +25,12 @@ std::string_view name(Sampler sampler) {
 
 namespace {
 
-// Depth at which every cell is still complete is band - sqrt(3); the hand-over ends before it.
+// Depth at which the transition ends; cells are complete down to band - sqrt(3).
 constexpr double kHandOverEnd = 1.75, kHandOverWidth = 1;
-// However narrow the band, values at the surface stay those of the nodes.
+// Highest start of the transition: even a narrow band keeps the values at the surface.
 constexpr double kShallowestHandOver = -0.25;
 
-// Spread over which the derivative takes over.
+// Dispersion range over which the exact derivative takes over.
 constexpr double kCreaseWidth = 0.001;
 
 } // namespace
@@ -40,9 +40,9 @@ FieldSampler::FieldSampler(const SurfaceField& field, Sampler sampler)
       last_node_(field.grid.nodes[0] - 1, field.grid.nodes[1] - 1, field.grid.nodes[2] - 1) {
   if (field.sample.size() != field.blockCount())
     throw std::invalid_argument("FieldSampler: the field has no sample layer; call withSamples()");
-  hand_over_ = field.coarse.empty()
-                   ? -std::numeric_limits<double>::infinity()
-                   : std::min(-(field.band - kHandOverEnd - kHandOverWidth), kShallowestHandOver);
+  transition_phi_ = field.coarse.empty() ? -std::numeric_limits<double>::infinity()
+                                         : std::min(-(field.band - kHandOverEnd - kHandOverWidth),
+                                                    kShallowestHandOver);
 }
 
 GridSample FieldSampler::atGrid(const Vec3& q) const noexcept {
@@ -54,14 +54,14 @@ GridSample FieldSampler::atGrid(const Vec3& q) const noexcept {
   sample.phi = static_cast<double>(value.sum[0] + value.taylor_half);
   sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
   sample.region = FieldRegion::band;
-  if (sample.phi < hand_over_) [[unlikely]]
-    return handOver(q, sample);
+  if (sample.phi < transition_phi_) [[unlikely]]
+    return blendToCoarse(q, sample);
   return sample;
 }
 
 namespace {
 
-// The four nodes of a layer of a cell, x fastest, a quantity each.
+// The four nodes of a layer of a cell, x fastest, one quantity each.
 struct Layer {
   Float4 phi, gx, gy, gz;
 };
@@ -83,10 +83,9 @@ float sumOf(Float4 value) {
 
 } // namespace
 
-// The gradient's length alone does not tell: in a field with relief baked in it is not 1 on either
-// side.
-void FieldSampler::followCrease(const BandCell& cell, double own,
-                                SurfaceSample& sample) const noexcept {
+// The gradient's length is not 1 on either side of a crease in baked relief.
+void FieldSampler::applyExactGradient(const BandCell& cell, double exact_gradient_weight,
+                                      SurfaceSample& sample) const noexcept {
   const float fx = cell.fx, fy = cell.fy, fz = cell.fz, ex = 1 - fx, ey = 1 - fy, ez = 1 - fz;
   const Layer low = layerAt(cell.node), high = layerAt(cell.node + kLayer);
   const Float4 weight = {ex * ey, fx * ey, ex * fy, fx * fy};
@@ -94,9 +93,11 @@ void FieldSampler::followCrease(const BandCell& cell, double own,
                squares_high = high.gx * high.gx + high.gy * high.gy + high.gz * high.gz;
   const float squares = sumOf(weight * (ez * squares_low + fz * squares_high));
   if (!(squares > 0)) return;
-  sample.spread = std::max(0.0, 1 - sample.gradient.squaredNorm() / static_cast<double>(squares));
-  if (sample.spread < kAgreedSpread) sample.spread = 0;
-  const double share = std::clamp((sample.spread - kAgreedSpread) / kCreaseWidth, own, 1.0);
+  sample.normal_dispersion =
+      std::max(0.0, 1 - sample.gradient.squaredNorm() / static_cast<double>(squares));
+  if (sample.normal_dispersion < kMaxNormalDispersion) sample.normal_dispersion = 0;
+  const double share = std::clamp((sample.normal_dispersion - kMaxNormalDispersion) / kCreaseWidth,
+                                  exact_gradient_weight, 1.0);
   if (share == 0) return;
   Float4 v_low = low.phi, v_high = high.phi;
   Vec3 derivative = Vec3::Zero();
@@ -119,7 +120,7 @@ double FieldSampler::phiAtGrid(const Vec3& q) const noexcept {
     return beyondBand(q).phi;
   const Blend value = blended(cell);
   const auto phi = static_cast<double>(value.sum[0] + value.taylor_half);
-  if (phi < hand_over_) [[unlikely]]
+  if (phi < transition_phi_) [[unlikely]]
     return atGrid(q).phi;
   return phi;
 }
@@ -130,7 +131,7 @@ int clampedIndex(double value, int last) {
   return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(last)));
 }
 
-// Distance is 1-Lipschitz: far from the surface the nearest coarse node bounds it from below.
+// Distance is 1-Lipschitz, so the nearest coarse node bounds it from below far from the surface.
 double outsideBound(const SurfaceField& field, const Vec3& q) {
   const double least = std::max(0.0, field.band - kHandOverEnd);
   if (field.coarse.empty()) return least;
@@ -147,7 +148,8 @@ double outsideBound(const SurfaceField& field, const Vec3& q) {
   return bound > least ? bound : least;
 }
 
-// Whether a point that is not in the band is inside: its block's mark, or its nearest node's sign.
+// Returns true if a point outside the band is inside, by its block's mark or its nearest node's
+// sign.
 bool isInside(const SurfaceField& field, const Vec3& q) {
   const auto& n = field.grid.nodes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -170,18 +172,18 @@ GridSample FieldSampler::beyondBand(const Vec3& q) const noexcept {
   GridSample sample;
   if (q.hasNaN()) {
     sample.phi = std::numeric_limits<double>::infinity();
-    sample.region = FieldRegion::nowhere;
+    sample.region = FieldRegion::invalid;
     return sample;
   }
-  if (isInside(*field_, q)) return deepSample(q);
+  if (isInside(*field_, q)) return interiorSample(q);
   sample.phi = outsideBound(*field_, q);
   sample.region = FieldRegion::outside;
   return sample;
 }
 
-GridSample FieldSampler::deepSample(const Vec3& q) const noexcept {
+GridSample FieldSampler::interiorSample(const Vec3& q) const noexcept {
   GridSample sample;
-  sample.region = FieldRegion::deep;
+  sample.region = FieldRegion::interior;
   if (field_->coarse.empty()) {
     sample.phi = -field_->band;
     return sample;
@@ -210,16 +212,17 @@ GridSample FieldSampler::deepSample(const Vec3& q) const noexcept {
   return sample;
 }
 
-std::optional<FieldSampler::DeepFeet> FieldSampler::deepFeet(const Vec3& q) const noexcept {
-  constexpr float kOneDirection = 0.9F;  // shorter: several feet were as near, none was kept
-  constexpr double kAsNear = kBlockSide; // [voxel], the coarse nodes' spacing
+std::optional<FieldSampler::InteriorClosestPoints>
+FieldSampler::interiorClosestPoints(const Vec3& q) const noexcept {
+  constexpr float kOneDirection = 0.9F;  // shorter gradients mark several nearest points
+  constexpr double kAsNear = kBlockSide; // [voxel], spacing of coarse nodes
   constexpr double kOpposed = -0.2;      // cosine
   if (field_->coarse.empty() || q.hasNaN()) return std::nullopt;
   std::array<int, 3> at{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     at[axis] =
         clampedIndex(q[static_cast<Eigen::Index>(axis)] / kBlockSide, field_->blocks[axis] - 1);
-  std::array<Vec3, 8> way; // from q to the feet
+  std::array<Vec3, 8> way; // from q to each node's nearest surface point
   std::size_t count = 0, nearest = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const int x = at[0] + (corner & 1), y = at[1] + (corner >> 1 & 1), z = at[2] + (corner >> 2);
@@ -234,7 +237,7 @@ std::optional<FieldSampler::DeepFeet> FieldSampler::deepFeet(const Vec3& q) cons
     ++count;
   }
   if (count == 0) return std::nullopt;
-  DeepFeet feet{q + way[nearest]};
+  InteriorClosestPoints feet{q + way[nearest]};
   const double least = way[nearest].norm();
   for (std::size_t i = 0; i < count; ++i) {
     const double length = way[i].norm();
@@ -244,9 +247,9 @@ std::optional<FieldSampler::DeepFeet> FieldSampler::deepFeet(const Vec3& q) cons
   return feet;
 }
 
-GridSample FieldSampler::handOver(const Vec3& q, const GridSample& sample) const noexcept {
-  const double w = std::min((hand_over_ - sample.phi) / kHandOverWidth, 1.0);
-  GridSample deep = deepSample(q);
+GridSample FieldSampler::blendToCoarse(const Vec3& q, const GridSample& sample) const noexcept {
+  const double w = std::min((transition_phi_ - sample.phi) / kHandOverWidth, 1.0);
+  GridSample deep = interiorSample(q);
   deep.phi += (1 - w) * (sample.phi - deep.phi);
   deep.gradient += (1 - w) * (sample.gradient - deep.gradient);
   return deep;

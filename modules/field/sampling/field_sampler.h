@@ -1,4 +1,4 @@
-// Value and direction of a field at any point, in constant time and without allocation.
+// Interpolates a field at any point, in constant time and without allocation.
 #pragma once
 
 #include <cmath>
@@ -6,12 +6,12 @@
 #include <optional>
 #include <string_view>
 
-#include "field/build/band_cell.h"
+#include "field/sampling/band_cell.h"
 
 namespace patina {
 
-// kim: trilinear value and the trilinear blend of nodal gradients (K05, F1: direction O(h^2), value
-// O(h^2)). high: same direction, value = average of trilinear and gradient-Taylor blend (F15:
+// kim: trilinear value and trilinear blend of nodal gradients (K05, F1: both O(h^2)). high: the
+// same direction, and the average of the trilinear value and the gradient-Taylor blend (F15:
 // O(h^3)).
 enum class Sampler : std::uint8_t { kim, high };
 
@@ -19,7 +19,7 @@ struct SamplerEntry {
   Sampler sampler;
   std::string_view name, caption;
 };
-// All of them, in the order of the enum; commands and scenes know no other list.
+// All samplers, in the order of the enum. Commands and scenes use this list.
 inline constexpr SamplerEntry kSamplers[] = {{Sampler::kim, "kim", "as in the paper"},
                                              {Sampler::high, "high", "of higher order"}};
 
@@ -27,75 +27,75 @@ Sampler parseSampler(std::string_view text); // throws Error naming the choices
 std::string_view name(Sampler sampler);
 
 enum class FieldRegion : std::uint8_t {
-  band,    // all eight nodes stored
-  outside, // farther than the band: phi is a lower bound of the distance, gradient zero
-  deep,    // inside, deeper than band - 2.75 voxels (at least 0.25): from the coarse nodes
-  nowhere, // a NaN point: phi = +infinity
+  band,     // all eight nodes stored
+  outside,  // farther than the band: phi is a lower bound of the distance, gradient zero
+  interior, // inside, deeper than band - 2.75 voxels (at least 0.25): read from the coarse nodes
+  invalid,  // NaN point: phi = +infinity
 };
 
-// In voxels; the gradient is dimensionless and not normalised.
+// Values in voxels; the gradient is dimensionless and not normalised.
 struct GridSample {
   double phi = 0;
   Vec3 gradient = Vec3::Zero();
   FieldRegion region = FieldRegion::outside;
 };
 
-// As GridSample, for what follows the surface itself (P02). Where the eight nodes agree about the
-// direction the gradient is their blend; across a crease, where a blend is the direction of neither
-// side, it is the derivative of the sampler's own value.
+// Sample for methods that follow the surface (P02). The gradient is the blend of the eight nodal
+// directions if they agree. Across a crease, where the blend is the direction of neither side, it
+// is the derivative of the sampler's own value.
 struct SurfaceSample {
   double phi = 0;
   Vec3 gradient = Vec3::Zero();
-  double spread = 0; // of the nodes' directions: 0 = one, 1 = opposite ones; 0 where they agree
+  double normal_dispersion = 0; // nodal directions: 0 = equal, 1 = opposite; small values become 0
   FieldRegion region = FieldRegion::outside;
 };
 
-// Spread of the nodes' directions up to which they are one.
-inline constexpr double kAgreedSpread = 0.0006;
+// Largest dispersion of the nodal directions that counts as agreement.
+inline constexpr double kMaxNormalDispersion = 0.0006;
 
-// A view: the field must outlive it and must have its sample layer. Any thread.
-//
-// From band to deep the value passes over one voxel of depth to the coarse one, which is held at
-// band - 1.75 or deeper: in bands of 3 voxels or more depth is continuous and never falls on the
-// way in. Without a coarse layer points deeper than the band report phi = -band and a zero
+// View of a field, which must outlive it and have its sample layer. Any thread.
+// Between band and interior the value changes over one voxel of depth to the coarse one, which is
+// clamped to band - 1.75 or deeper: in bands of at least 3 voxels depth is continuous and
+// monotonic. Without a coarse layer points deeper than the band get phi = -band and a zero
 // gradient.
 class FieldSampler {
  public:
-  FieldSampler(const SurfaceField& field, Sampler sampler); // invalid_argument without samples
+  FieldSampler(const SurfaceField& field,
+               Sampler sampler); // throws
 
-  GridSample atGrid(const Vec3& q) const noexcept; // q in grid coordinates
-  // own: share of the value's own derivative in the gradient also where the nodes agree, 0 .. 1.
-  // With 0 a crease is told only where the blend's length is not 1 either, as beside every crease
-  // of a distance; between baked flanks of one slope it may be.
-  // seen, where asked for, becomes the cell about q, if that is in the band.
-  SurfaceSample surfaceAtGrid(const Vec3& q, double own = 0,
+  GridSample atGrid(const Vec3& q) const noexcept; // q is in grid coordinates
+  // `exact_gradient_weight` (0 .. 1) blends the interpolant's exact derivative into the gradient
+  // even if the nodal directions agree. With 0 a crease is detected only if the blended gradient is
+  // not of unit length, which may miss one between baked slopes. `seen` receives the cell of q if
+  // that is in the band.
+  SurfaceSample surfaceAtGrid(const Vec3& q, double exact_gradient_weight = 0,
                               BandCell* seen = nullptr) const noexcept;
-  // The cell about q; false outside of the band.
+  // Finds the cell of q. Returns false outside the band.
   bool cellAt(const Vec3& q, BandCell& cell) const noexcept {
     return findCell(*field_, last_node_, q, cell);
   }
-  // Only the value, for root finding along a ray.
+  // Returns only the value, for root finding along a ray.
   double phiAtGrid(const Vec3& q) const noexcept;
-  // In metres: phi [m].
+  // The same in metres: p [m] to phi [m].
   GridSample at(const Vec3& p) const noexcept {
     GridSample sample = atGrid(grid_.toGrid(p));
     sample.phi *= grid_.voxel;
     return sample;
   }
-  // Deep inside: what the eight coarse nodes about q know of the surface. Not for every tick.
-  struct DeepFeet {
-    Vec3 nearest = Vec3::Zero(); // of their nearest surface points the one nearest to q
-    bool opposed = false; // another, on about the opposite side, is as near within a coarse cell
+  // Estimate from the eight coarse nodes about a deep point. Too slow for every tick.
+  struct InteriorClosestPoints {
+    Vec3 nearest = Vec3::Zero(); // surface point nearest to q
+    bool opposed = false;        // an opposite one is as near
   };
-  // In grid coordinates; exact to second order in q's distance from a node. Nothing where no coarse
-  // node about is inside and has one nearest point.
-  std::optional<DeepFeet> deepFeet(const Vec3& q) const noexcept;
-  // Nearest face of the nearest stored node of p's cell; -1 if none.
+  // q in grid coordinates; exact to second order in q's distance from a node. Returns nullopt
+  // unless a neighbouring coarse node is inside with a unique nearest point.
+  std::optional<InteriorClosestPoints> interiorClosestPoints(const Vec3& q) const noexcept;
+  // Returns the nearest face of the nearest stored node of p's cell, or -1.
   std::int32_t faceNear(const Vec3& p) const noexcept;
 
   const FieldGrid& grid() const noexcept { return grid_; }
   double perVoxel() const noexcept { return per_voxel_; } // [1/m]
-  // By a product: quicker than the grid's own division, from which its last bit may differ.
+  // Multiplies, which is faster than the grid's own division; the last bit may differ.
   Vec3 toGrid(const Vec3& p) const noexcept { return per_voxel_ * (p - grid_.origin); }
   Sampler sampler() const noexcept { return sampler_; }
 
@@ -103,20 +103,21 @@ class FieldSampler {
   Blend blended(const BandCell& cell) const noexcept {
     return sampler_ == Sampler::high ? blend<true>(cell) : blend<false>(cell);
   }
-  void followCrease(const BandCell& cell, double own, SurfaceSample& sample) const noexcept;
+  void applyExactGradient(const BandCell& cell, double exact_gradient_weight,
+                          SurfaceSample& sample) const noexcept;
   GridSample beyondBand(const Vec3& q) const noexcept;
-  GridSample deepSample(const Vec3& q) const noexcept;
-  GridSample handOver(const Vec3& q, const GridSample& sample) const noexcept;
+  GridSample interiorSample(const Vec3& q) const noexcept;
+  GridSample blendToCoarse(const Vec3& q, const GridSample& sample) const noexcept;
 
   const SurfaceField* field_;
   FieldGrid grid_;
   double per_voxel_;
   Sampler sampler_;
-  Vec3 last_node_;   // grid coordinates; cells lie in [0, last_node_)
-  double hand_over_; // phi below which the coarse nodes are blended in
+  Vec3 last_node_;        // grid coordinates; cells lie in [0, last_node_)
+  double transition_phi_; // phi below which the coarse nodes are blended in
 };
 
-inline SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own,
+inline SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double exact_gradient_weight,
                                                  BandCell* seen) const noexcept {
   SurfaceSample sample;
   BandCell cell;
@@ -131,8 +132,8 @@ inline SurfaceSample FieldSampler::surfaceAtGrid(const Vec3& q, double own,
   const float squared =
       value.sum[1] * value.sum[1] + value.sum[2] * value.sum[2] + value.sum[3] * value.sum[3];
   sample.gradient = Vec3(value.sum[1], value.sum[2], value.sum[3]);
-  if (std::abs(squared - 1) > kAgreedSpread || own > 0) [[unlikely]]
-    followCrease(cell, own, sample);
+  if (std::abs(squared - 1) > kMaxNormalDispersion || exact_gradient_weight > 0) [[unlikely]]
+    applyExactGradient(cell, exact_gradient_weight, sample);
   return sample;
 }
 

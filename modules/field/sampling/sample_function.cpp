@@ -17,7 +17,7 @@ std::array<int, 3> blockCoordinates(std::size_t index, const std::array<int, 3>&
           static_cast<int>(index / (nx * ny))};
 }
 
-// Null if no node is in the band; then `top` tells on which side the block lies.
+// Returns null if no node is in the band, and the block's side in `top`.
 std::shared_ptr<const DistanceBlock> sampleBlock(const Function& phi, const SurfaceField& field,
                                                  const std::array<int, 3>& at, std::int32_t& top) {
   const FieldGrid& grid = field.grid;
@@ -33,10 +33,10 @@ std::shared_ptr<const DistanceBlock> sampleBlock(const Function& phi, const Surf
   for (int z = 0; z < kBlockSide; ++z)
     for (int y = 0; y < kBlockSide; ++y)
       for (int x = 0; x < kBlockSide; ++x, ++out) {
-        // Past the grid's last node, too: gradients beside it stay central.
+        // Includes nodes beyond the grid's last one, so that gradients beside it stay central.
         const double value = phi(grid.toWorld(corner + Vec3(x, y, z))) / grid.voxel;
         const bool stored = std::abs(value) <= field.band;
-        *out = stored ? static_cast<float>(value) : value < 0 ? -kBeyondBand : kBeyondBand;
+        *out = stored ? static_cast<float>(value) : value < 0 ? -kBackground : kBackground;
         any |= stored;
       }
   return any ? std::make_shared<const DistanceBlock>(nodes) : nullptr;
@@ -75,15 +75,15 @@ SurfaceField sampleFunction(const Function& phi, const FieldGrid& grid, double b
     corner_total *= static_cast<std::size_t>(corners[axis]);
   }
 
-  field.top.resize(block_total);
+  field.block_index.resize(block_total);
   std::vector<std::shared_ptr<const DistanceBlock>> sampled(block_total);
   parallelFor(block_total, [&](std::size_t index) {
     sampled[index] =
-        sampleBlock(phi, field, blockCoordinates(index, field.blocks), field.top[index]);
+        sampleBlock(phi, field, blockCoordinates(index, field.blocks), field.block_index[index]);
   });
   for (std::size_t index = 0; index < block_total; ++index) {
     if (!sampled[index]) continue;
-    field.top[index] = static_cast<std::int32_t>(field.distance.size());
+    field.block_index[index] = static_cast<std::int32_t>(field.distance.size());
     field.block_at.push_back(blockCoordinates(index, field.blocks));
     field.distance.push_back(std::move(sampled[index]));
   }

@@ -1,6 +1,7 @@
 #include "field/signs/sign_components.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <tbb/parallel_for.h>
@@ -20,7 +21,7 @@ std::uint16_t rootOf(Labels& parent, std::uint16_t label) {
   return label;
 }
 
-// Two passes over the nodes: labels with equivalences, then labels without.
+// Labels the nodes in two passes: with equivalences, then without.
 void labelNodes(const float* d, Labels& label, std::vector<Part>& parts) {
   Labels parent;
   std::uint16_t count = 0;
@@ -48,7 +49,7 @@ void labelNodes(const float* d, Labels& label, std::vector<Part>& parts) {
     }
   }
   Labels number;
-  for (std::uint16_t l = 0; l < count; ++l) { // a root comes before all that point at it
+  for (std::uint16_t l = 0; l < count; ++l) { // A root precedes all labels that refer to it.
     if (parent[l] != l) continue;
     number[l] = static_cast<std::uint16_t>(parts.size());
     parts.emplace_back();
@@ -100,7 +101,7 @@ struct Linker {
   const FieldBuilder& builder;
   const Components& components;
 
-  // -1 outside the grid.
+  // Returns -1 outside the grid.
   std::ptrdiff_t topIndex(const std::array<int, 3>& at) const {
     const auto& n = builder.field.blocks;
     for (std::size_t a = 0; a < 3; ++a)
@@ -117,8 +118,8 @@ struct Linker {
         at[axis] += side;
         const std::ptrdiff_t index = topIndex(at);
         if (index < 0) continue;
-        const std::int32_t other = builder.field.top[static_cast<std::size_t>(index)];
-        if (other >= 0 && side < 0) continue; // the other block's business
+        const std::int32_t other = builder.field.block_index[static_cast<std::size_t>(index)];
+        if (other >= 0 && side < 0) continue; // left to the other block
         const bool there = other >= 0;
         const auto beyond = there ? phiOf(builder, static_cast<std::size_t>(other))
                                   : std::array<float, kBlockNodes>();
@@ -140,9 +141,9 @@ struct Linker {
     }
   }
 
-  // visit(other) of those after it.
+  // Calls visit(other) for unstored neighbours with a higher index.
   template <typename Visit> void besideUnstored(std::size_t index, const Visit& visit) const {
-    const auto& top = builder.field.top;
+    const auto& top = builder.field.block_index;
     const auto& n = builder.field.blocks;
     const auto i = static_cast<std::ptrdiff_t>(index);
     const std::array<int, 3> at{static_cast<int>(i % n[0]), static_cast<int>(i / n[0] % n[1]),
@@ -157,7 +158,7 @@ struct Linker {
   }
 };
 
-// Items in chunks of fixed size, so that the order of the links does not depend on the threads.
+// Collects links in chunks of fixed size, so that their order does not depend on the threads.
 template <typename Body>
 void collectLinks(std::size_t count, std::vector<Link>& links, const Body& body) {
   constexpr std::size_t kChunk = 128;
@@ -181,8 +182,8 @@ std::vector<std::uint32_t> rootsOf(const Linker& linker) {
     root[std::max(a, b)] = std::min(a, b);
   };
   for (const Link& link : linker.components.links) join(link.a, link.b);
-  for (std::size_t i = 0; i < linker.builder.field.top.size(); ++i)
-    if (linker.builder.field.top[i] < 0)
+  for (std::size_t i = 0; i < linker.builder.field.block_index.size(); ++i)
+    if (linker.builder.field.block_index[i] < 0)
       linker.besideUnstored(i, [&](std::size_t other) {
         join(linker.components.partOfBlock(i), linker.components.partOfBlock(other));
       });
@@ -211,7 +212,7 @@ Components connectedComponents(const FieldBuilder& builder) {
     block.parts = {};
   }
   components.first.push_back(static_cast<std::uint32_t>(components.parts.size()));
-  components.parts.resize(components.parts.size() + builder.field.top.size());
+  components.parts.resize(components.parts.size() + builder.field.block_index.size());
 
   const Linker linker{builder, components};
   collectLinks(slots, components.links, [&](std::size_t s, std::vector<Link>& links) {
@@ -223,12 +224,119 @@ Components connectedComponents(const FieldBuilder& builder) {
 
 void linkUnstored(const FieldBuilder& builder, Components& components) {
   const Linker linker{builder, components};
-  for (std::size_t i = 0; i < builder.field.top.size(); ++i)
-    if (builder.field.top[i] < 0)
+  for (std::size_t i = 0; i < builder.field.block_index.size(); ++i)
+    if (builder.field.block_index[i] < 0)
       linker.besideUnstored(i, [&](std::size_t other) {
         components.links.push_back(
             {components.partOfBlock(i), components.partOfBlock(other), kBlockSide * kBlockSide});
       });
+}
+
+namespace {
+
+// Returns the lowest index of the vertices at each vertex's position.
+std::vector<std::int32_t> welded(const std::vector<Vec3>& positions) {
+  std::vector<std::int32_t> order(positions.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto at = [&](std::int32_t v) -> const Vec3& {
+    return positions[static_cast<std::size_t>(v)];
+  };
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    for (int k = 0; k < 3; ++k)
+      if (at(a)[k] != at(b)[k]) return at(a)[k] < at(b)[k];
+    return a < b;
+  });
+  std::vector<std::int32_t> first(positions.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && at(order[i]) == at(order[i - 1]);
+    first[static_cast<std::size_t>(order[i])] =
+        same ? first[static_cast<std::size_t>(order[i - 1])] : order[i];
+  }
+  return first;
+}
+
+} // namespace
+
+bool isClosed(const TriangleMesh& mesh, const OpenParts& open) {
+  for (const PartSides& part : open.decided)
+    if (part.sides == OpenSides::closed && part.rim_edges > 0) return false;
+  const std::vector<std::int32_t> vertex = welded(mesh.positions);
+  std::vector<Triangle> faces;
+  faces.reserve(mesh.triangles.size());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (open.any() && open.open[f]) continue;
+    const Triangle& t = mesh.triangles[f];
+    Triangle face;
+    for (std::size_t k = 0; k < 3; ++k) face[k] = vertex[static_cast<std::size_t>(t[k])];
+    std::sort(face.begin(), face.end());
+    faces.push_back(face);
+  }
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  std::vector<std::uint64_t> edges;
+  edges.reserve(3 * faces.size());
+  for (const Triangle& face : faces) {
+    const auto a = static_cast<std::uint64_t>(face[0]), b = static_cast<std::uint64_t>(face[1]),
+               c = static_cast<std::uint64_t>(face[2]);
+    if (a != b) edges.push_back(a << 32 | b);
+    if (b != c) edges.push_back(b << 32 | c);
+    if (a != c) edges.push_back(a << 32 | c);
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t j = i;
+    while (j < edges.size() && edges[j] == edges[i]) ++j;
+    if (j - i == 1) return false;
+    i = j;
+  }
+  return true;
+}
+
+std::vector<std::int8_t> cutLeaks(const Components& components,
+                                  const std::vector<float>& inside_confidence) {
+  // Probability that the walk ends at a node, relative to a step along an edge.
+  constexpr float kTrust = 0.1F;
+  constexpr int kSweeps = 40;
+  const std::size_t parts = components.parts.size();
+  std::vector<std::uint32_t> offset(parts + 1);
+  for (const Link& link : components.links) {
+    if (std::isnan(inside_confidence[link.a])) continue;
+    ++offset[link.a + 1];
+    ++offset[link.b + 1];
+  }
+  std::partial_sum(offset.begin(), offset.end(), offset.begin());
+  struct Neighbour {
+    std::uint32_t part;
+    float edges;
+  };
+  std::vector<Neighbour> neighbours(offset.back());
+  std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
+  for (const Link& link : components.links) {
+    if (std::isnan(inside_confidence[link.a])) continue;
+    neighbours[next[link.a]++] = {link.b, static_cast<float>(link.edges)};
+    neighbours[next[link.b]++] = {link.a, static_cast<float>(link.edges)};
+  }
+
+  std::vector<float> value = inside_confidence;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t i = 0; i < parts; ++i) {
+      if (std::isnan(inside_confidence[i])) continue;
+      const Part& part = components.parts[i];
+      const float own = kTrust * static_cast<float>(part.slot < 0 ? kBlockNodes : part.nodes) *
+                        std::abs(inside_confidence[i]);
+      float sum = inside_confidence[i] < 0 ? -own : own;
+      float weight = own;
+      for (std::uint32_t n = offset[i]; n < offset[i + 1]; ++n) {
+        sum += neighbours[n].edges * value[neighbours[n].part];
+        weight += neighbours[n].edges;
+      }
+      if (weight > 0) value[i] = sum / weight;
+    }
+  }
+  std::vector<std::int8_t> sign(parts);
+  for (std::size_t i = 0; i < parts; ++i)
+    if (!std::isnan(inside_confidence[i])) sign[i] = value[i] > 0 ? -1 : 1;
+  return sign;
 }
 
 } // namespace patina::signs

@@ -1,4 +1,5 @@
-// Nodes that the surface cannot separate, as connected components: private to signs.
+// Connected components of nodes on one side of the surface, and the cuts through those that leak.
+// Internal to the field.
 #pragma once
 
 #include <array>
@@ -6,18 +7,19 @@
 #include <memory>
 #include <vector>
 
-#include "field/build/field_builder.h"
+#include "field/store/field_builder.h"
+#include "geometry/sides/open_parts.h"
 
 namespace patina::signs {
 
-// d1 + d2 must exceed the length between two nodes by this [voxel]. Above what both distances err,
-// it keeps components from leaking through cracks: midway in one of half-width c, d is c and not 0.
+// Excess [voxel] of d1 + d2 over the nodes' distance that connects them. Exceeds the errors of both
+// and prevents leaks: midway in a crack of half-width c, d is c and not 0.
 inline constexpr float kMargin = 0.02F;
 
-// The nodes of one block that are connected inside it, or one whole block that is not stored.
+// Nodes of one block that are connected inside it, or one whole unstored block.
 struct Part {
   std::int32_t slot = -1;    // -1 = not stored
-  std::uint16_t deepest = 0; // node of the block, by index
+  std::uint16_t deepest = 0; // index of the deepest node in the block
   std::uint16_t nodes = 0;
   float depth = 0; // unsigned distance at `deepest`, at most band + 1; 0 if not stored
 };
@@ -29,11 +31,11 @@ struct Link { // `edges` grid edges connect parts a and b of different blocks
 using Labels = std::array<std::uint16_t, kBlockNodes>;
 
 struct Components {
-  std::vector<Part> parts; // by slot, then one for each entry of the top table, used or not
-  std::vector<std::uint32_t> first;            // slot -> its first part; one entry past the end
-  std::vector<std::unique_ptr<Labels>> labels; // by slot: node -> part - first; null if all 0
-  std::vector<Link> links;                     // but those between blocks that are not stored
-  std::vector<std::uint32_t> root;             // part -> lowest part of its component
+  std::vector<Part> parts;                     // sorted by slot, then one per entry of block_index
+  std::vector<std::uint32_t> first;            // first part of each slot; one entry past the end
+  std::vector<std::unique_ptr<Labels>> labels; // per slot: node -> part - first; null if all 0
+  std::vector<Link> links;                     // links, except between unstored blocks
+  std::vector<std::uint32_t> root;             // lowest part of each part's component
 
   std::uint32_t partOf(std::int32_t slot, std::size_t node) const {
     const auto s = static_cast<std::size_t>(slot);
@@ -45,7 +47,20 @@ struct Components {
 };
 
 Components connectedComponents(const FieldBuilder& builder);
-// By far the most links, 36 bytes a block of the grid, and needed only where a surface leaks.
+// Links unstored blocks: by far the most links (36 bytes per block), needed only for leaks.
 void linkUnstored(const FieldBuilder& builder, Components& components);
+
+// Cuts components that leak through holes of the surface. Internal to signs.
+
+// Returns true if no edge of the closed parts has a single face, with equal vertices and duplicate
+// faces merged. Then no component can run from inside to outside.
+bool isClosed(const TriangleMesh& mesh, const OpenParts& open);
+
+// Cuts leaking components so that few edges are crossed, by a random walk (Grady 2006) from each
+// part along the links to the first part with an `inside_confidence`: 1 = certainly inside, -1 =
+// certainly outside, 0 = none, NaN = not in a leaking component. Returns the sign of phi by part:
+// -1 inside, +1 outside, 0 for others.
+std::vector<std::int8_t> cutLeaks(const Components& components,
+                                  const std::vector<float>& inside_confidence);
 
 } // namespace patina::signs

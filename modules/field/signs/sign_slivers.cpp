@@ -24,7 +24,7 @@ class NearbyBlocks {
 
  private:
   const FieldBuilder& builder_;
-  std::array<std::int32_t, 8> slots_; // no more meet at a node and its neighbours
+  std::array<std::int32_t, 8> slots_; // A node and its neighbours lie in at most eight blocks.
   std::array<std::array<float, kBlockNodes>, 8> phi_;
   std::size_t count_ = 0;
 };
@@ -37,12 +37,12 @@ std::array<int, 3> nodeAt(const FieldBuilder& builder, std::int32_t slot, std::s
 
 bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, std::int32_t slot,
                        std::size_t node, NodePlace& found) {
-  // More than both distances err. A sliver joins nothing else, so that cracks need no more.
+  // Exceeds the errors of both distances. Cracks need no more, since a sliver joins nothing else.
   constexpr float kExact = 1e-3F;
   struct Candidate {
     NodePlace place;
     std::array<int, 3> step;
-    float margin; // by how much the distances exceed the length
+    float margin; // excess of the distances over the length
   };
   std::array<Candidate, 26> candidates;
   std::size_t count = 0;
@@ -61,7 +61,7 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
         NodePlace place;
         place.top_index =
             static_cast<std::size_t>((bz * field.blocks[1] + by) * field.blocks[0] + bx);
-        place.slot = std::max(field.top[place.top_index], -1);
+        place.slot = std::max(field.block_index[place.top_index], -1);
         place.node = next.node;
         const float d = place.slot < 0 ? static_cast<float>(field.band)
                                        : blocks.distanceAt(place.slot, place.node);
@@ -77,7 +77,7 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
       }
     }
   }
-  // The likeliest first; beyond a few, the winding number is as cheap.
+  // Tries the most likely ones first; more rays would cost as much as the winding number.
   constexpr std::size_t kRays = 4;
   const Vec3 origin = field.grid.toWorld(Vec3(at[0], at[1], at[2]));
   for (std::size_t i = 0; i < std::min(count, kRays); ++i) {

@@ -1,10 +1,10 @@
-// Components so close to the surface that hardly any edge about them is safe: private to signs.
+// Slivers: components too close to the surface for safe edges to others. Internal to the field.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-#include "field/build/field_builder.h"
+#include "field/store/field_builder.h"
 #include "geometry/tree/triangle_tree.h"
 
 namespace patina::signs {
@@ -17,8 +17,8 @@ struct NodePlace {
 
 std::array<int, 3> nodeAt(const FieldBuilder& builder, std::int32_t slot, std::size_t node);
 
-// A node of the 26 about this one that is farther from the surface and on the same side: because
-// the sum of distances says so, or else because no triangle lies between them. False if none.
+// Finds one of the 26 neighbours that is farther from the surface and on the same side, by the sum
+// of distances or because no triangle lies between them. Returns false if there is none.
 bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, std::int32_t slot,
                        std::size_t node, NodePlace& found);
 

@@ -8,9 +8,8 @@
 #include <tbb/parallel_for.h>
 
 #include "field/signs/sign_components.h"
-#include "field/signs/sign_leaks.h"
 #include "field/signs/sign_slivers.h"
-#include "geometry/mesh/front_side.h"
+#include "geometry/sides/pseudonormal_side.h"
 
 namespace patina {
 
@@ -21,14 +20,14 @@ using signs::Part;
 
 namespace {
 
-constexpr float kSliver = 1;        // components nowhere deeper [voxel] are slivers
+constexpr float kSliver = 1;        // [voxel], largest depth of a sliver component
 constexpr float kOnSurface = 1e-6F; // [voxel]
 constexpr std::int8_t kInside = -1; // signs of phi
 constexpr std::int8_t kOutside = 1;
-constexpr std::int8_t kByNode = 2; // every node of the part has been signed for itself
-constexpr float kNoVote = std::numeric_limits<float>::quiet_NaN();
+constexpr std::int8_t kPerNode = 2; // every node of the part has its own sign
+constexpr float kUnknownVote = std::numeric_limits<float>::quiet_NaN();
 
-bool saysInside(float w) {
+bool isInsideByWinding(float w) {
   return std::abs(w) > 0.5F;
 }
 
@@ -44,7 +43,7 @@ class Signer {
   std::size_t run() {
     parts_ = signs::connectedComponents(builder_);
     sign_.assign(parts_.parts.size(), 0);
-    vote_.assign(parts_.parts.size(), kNoVote);
+    vote_.assign(parts_.parts.size(), kUnknownVote);
     depth_.assign(parts_.parts.size(), 0);
     for (std::size_t i = 0; i < parts_.parts.size(); ++i)
       depth_[parts_.root[i]] = std::max(depth_[parts_.root[i]], parts_.parts[i].depth);
@@ -77,7 +76,7 @@ class Signer {
   }
 
   bool isSliver(std::size_t part) const { return !(depth_[parts_.root[part]] > kSliver); }
-  // Between loose pieces a component leaks out of a thin part, which has a say all the same.
+  // A component can leak from a thin part between loose pieces, which still votes.
   bool reachesDeep(std::size_t part) const {
     constexpr float kLeast = 0.5F; // [voxel]
     const float depth = parts_.parts[part].depth;
@@ -103,19 +102,19 @@ class Signer {
     for (std::size_t i = 0; i < parts_.parts.size(); ++i) {
       if (std::isnan(vote_[i])) continue;
       Tally& t = tally[parts_.root[i]];
-      (saysInside(vote_[i]) ? t.inside : t.outside) += parts_.parts[i].nodes;
+      (isInsideByWinding(vote_[i]) ? t.inside : t.outside) += parts_.parts[i].nodes;
     }
     return tally;
   }
 
-  // Only parts that reach deep vote: there, single faces weigh little.
+  // Only deep parts vote, because single faces have little weight there.
   void signComponents() {
     std::vector<std::uint32_t> voters;
     for (std::uint32_t i = 0; i < parts_.first.back(); ++i)
       if (!isSliver(i) && reachesDeep(i)) voters.push_back(i);
     vote(voters);
     for (std::uint32_t i : voters)
-      if (saysInside(vote_[i])) turned_ += vote_[i] > 0 ? 1 : -1;
+      if (isInsideByWinding(vote_[i])) outward_balance_ += vote_[i] > 0 ? 1 : -1;
 
     const std::vector<Tally> tally = tallies();
     bool mixed = false;
@@ -128,14 +127,14 @@ class Signer {
     if (!mixed) return;
     if (!signs::isClosed(mesh_, open_)) cutLeaks(tally);
     for (std::uint32_t i = 0; i < parts_.first.back(); ++i)
-      if (!std::isnan(vote_[i]) && sign_[i] != kByNode &&
-          saysInside(vote_[i]) != (sign_[i] == kInside))
+      if (!std::isnan(vote_[i]) && sign_[i] != kPerNode &&
+          isInsideByWinding(vote_[i]) != (sign_[i] == kInside))
         ambiguous_ += parts_.parts[i].nodes;
   }
 
-  // A component that sees faces from both sides and yet votes as nothing were there: fewer nodes.
+  // Counts nodes of outside components whose deepest nodes face backs as well as fronts of faces.
   void countFaced(const std::vector<std::uint32_t>& voters) {
-    std::vector<Tally> seen(sign_.size()); // inside: sees a back
+    std::vector<Tally> seen(sign_.size()); // inside: behind the nearest face
     for (std::uint32_t i : voters) {
       if (sign_[i] == kInside || std::abs(vote_[i]) > 0.5F) continue;
       const double side = sideOfNearest(parts_.parts[i]);
@@ -156,12 +155,12 @@ class Signer {
         voters.push_back(i);
     }
     vote(voters);
-    std::vector<float> opinion(sign_.size(), kNoVote);
+    std::vector<float> inside_confidence(sign_.size(), kUnknownVote);
     for (std::uint32_t i : leaking)
-      opinion[i] =
+      inside_confidence[i] =
           std::isnan(vote_[i]) ? 0 : std::clamp(4 * (std::abs(vote_[i]) - 0.5F), -1.0F, 1.0F);
     signs::linkUnstored(builder_, parts_);
-    const std::vector<std::int8_t> cut = signs::cutLeaks(parts_, opinion);
+    const std::vector<std::int8_t> cut = signs::cutLeaks(parts_, inside_confidence);
     progress_.throwIfCancelled();
     for (std::uint32_t i : leaking) sign_[i] = cut[i];
     std::vector<bool> beside_cut(sign_.size());
@@ -170,7 +169,7 @@ class Signer {
     std::vector<std::int32_t> slots;
     for (std::uint32_t i : leaking) {
       if (!beside_cut[i] || !isStored(i)) continue;
-      sign_[i] = kByNode;
+      sign_[i] = kPerNode;
       if (slots.empty() || slots.back() != parts_.parts[i].slot)
         slots.push_back(parts_.parts[i].slot);
     }
@@ -180,9 +179,9 @@ class Signer {
       auto phi = phiOf(builder_, slot);
       std::size_t here = 0;
       for (std::size_t n = 0; n < phi.size(); ++n) {
-        if (sign_[parts_.partOf(slots[s], n)] != kByNode || progress_.cancelled()) continue;
+        if (sign_[parts_.partOf(slots[s], n)] != kPerNode || progress_.cancelled()) continue;
         const auto w = static_cast<float>(winding_.at(world(slots[s], n)));
-        if (saysInside(w)) phi[n] = -phi[n];
+        if (isInsideByWinding(w)) phi[n] = -phi[n];
         here += std::abs(std::abs(w) - 0.5F) < 0.25F;
       }
       setPhi(builder_, slot, phi);
@@ -192,9 +191,9 @@ class Signer {
   }
 
   struct Sliver {
-    std::uint32_t deepest = 0; // part
+    std::uint32_t deepest = 0; // index of the part
     std::size_t nodes = 0;
-    bool sees = false; // the node `seen`, whose sign it takes
+    bool has_visible_node = false; // `seen` is visible and gives the sign
     NodePlace seen;
   };
 
@@ -202,7 +201,7 @@ class Signer {
     if (place.slot < 0) return sign_[parts_.partOfBlock(place.top_index)];
     const std::uint32_t part = parts_.partOf(place.slot, place.node);
     if (isSliver(part)) return sign_[parts_.root[part]];
-    if (sign_[part] != kByNode) return sign_[part];
+    if (sign_[part] != kPerNode) return sign_[part];
     const float phi = phiAt(builder_, place.slot, place.node);
     return std::signbit(phi) ? kInside : kOutside;
   }
@@ -224,12 +223,12 @@ class Signer {
     return result;
   }
 
-  // What a sliver sees may be another's, always a deeper one's: the chain ends.
+  // A sliver may see another one, but only a deeper one, so that the chain ends.
   std::int8_t signOf(const Sliver& sliver, const std::vector<Sliver>& all,
                      const std::vector<Tally>& tally) {
     const std::uint32_t root = parts_.root[sliver.deepest];
     if (sign_[root] != 0) return sign_[root];
-    if (sliver.sees) {
+    if (sliver.has_visible_node) {
       if (sliver.seen.slot >= 0) {
         const std::uint32_t part = parts_.partOf(sliver.seen.slot, sliver.seen.node);
         if (isSliver(part)) signOf(all[sliver_of_[parts_.root[part]]], all, tally);
@@ -241,7 +240,7 @@ class Signer {
     } else {
       sign_[root] = kOutside;
     }
-    if (contradicts(sliver, sign_[root])) ambiguous_ += sliver.nodes;
+    if (conflictsWithFace(sliver, sign_[root])) ambiguous_ += sliver.nodes;
     return sign_[root];
   }
 
@@ -250,7 +249,7 @@ class Signer {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), 64), [&](const auto& range) {
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
         const Part& part = parts_.parts[all[i].deepest];
-        all[i].sees =
+        all[i].has_visible_node =
             part.depth > kOnSurface &&
             signs::visibleDeeperNode(builder_, tree_, part.slot, part.deepest, all[i].seen);
       }
@@ -258,7 +257,7 @@ class Signer {
     progress_.throwIfCancelled();
     std::vector<bool> blind(sign_.size());
     for (const Sliver& sliver : all)
-      if (!sliver.sees && parts_.parts[sliver.deepest].depth > kOnSurface)
+      if (!sliver.has_visible_node && parts_.parts[sliver.deepest].depth > kOnSurface)
         blind[parts_.root[sliver.deepest]] = true;
     std::vector<std::uint32_t> voters;
     for (std::uint32_t i = 0; i < parts_.first.back(); ++i)
@@ -271,8 +270,8 @@ class Signer {
       if (isSliver(i)) sign_[i] = sign_[parts_.root[i]];
   }
 
-  // On which side of its nearest face the deepest node stands: > 0 where the face turns to it, 0
-  // unless it stands over the face's interior.
+  // Returns the side of the nearest face at the deepest node: > 0 in front of it, 0 unless the
+  // nearest point is in the face's interior.
   double sideOfNearest(const Part& part) const {
     const std::int32_t face = builder_.face[static_cast<std::size_t>(part.slot)]->at(part.deepest);
     if (face < 0) return 0;
@@ -284,11 +283,11 @@ class Signer {
     return w.minCoeff() < 1e-3 ? 0 : (b - a).cross(c - a).dot(p - a);
   }
 
-  // Whether the nearest face shows the other side.
-  bool contradicts(const Sliver& sliver, std::int8_t sign) const {
+  // Returns true if the nearest face has the other sign.
+  bool conflictsWithFace(const Sliver& sliver, std::int8_t sign) const {
     const Part& part = parts_.parts[sliver.deepest];
-    if (turned_ == 0 || part.depth < 1e-2F) return false;
-    return sideOfNearest(part) * (turned_ > 0 ? 1 : -1) * sign < 0;
+    if (outward_balance_ == 0 || part.depth < 1e-2F) return false;
+    return sideOfNearest(part) * (outward_balance_ > 0 ? 1 : -1) * sign < 0;
   }
 
   void write() {
@@ -297,10 +296,10 @@ class Signer {
                       [&](const auto& range) {
                         for (std::size_t s = range.begin(); s < range.end(); ++s) writeBlock(s);
                       });
-    for (std::size_t i = 0; i < field.top.size(); ++i)
-      if (field.top[i] < 0)
-        field.top[i] = sign_[parts_.partOfBlock(i)] == kInside ? SurfaceField::kInside
-                                                               : SurfaceField::kOutside;
+    for (std::size_t i = 0; i < field.block_index.size(); ++i)
+      if (field.block_index[i] < 0)
+        field.block_index[i] = sign_[parts_.partOfBlock(i)] == kInside ? SurfaceField::kInside
+                                                                       : SurfaceField::kOutside;
   }
 
   void writeBlock(std::size_t slot) {
@@ -320,20 +319,20 @@ class Signer {
   const WindingNumber& winding_;
   const OpenParts& open_;
   Progress& progress_;
-  const bool loose_; // some part is of loose pieces
+  const bool loose_; // some part consists of loose pieces
   Components parts_;
-  std::vector<float> depth_;             // by root: of the component
-  std::vector<float> vote_;              // by part: winding number at its deepest node
-  std::vector<std::int8_t> sign_;        // by part
-  std::vector<std::uint32_t> sliver_of_; // by root
-  std::ptrdiff_t turned_ = 0;            // > 0: most faces turn outward
+  std::vector<float> depth_;             // depth of each component, at its root
+  std::vector<float> vote_;              // winding number at each part's deepest node
+  std::vector<std::int8_t> sign_;        // sign of each part
+  std::vector<std::uint32_t> sliver_of_; // sliver of each root
+  std::ptrdiff_t outward_balance_ = 0;   // > 0: most faces are oriented outward
   std::size_t ambiguous_ = 0;
 };
 
-// The nodes nearest to an open part.
-void signPlates(FieldBuilder& builder, const TriangleMesh& mesh, const OpenParts& open,
+// Signs the nodes closest to an open part.
+void signSheets(FieldBuilder& builder, const TriangleMesh& mesh, const OpenParts& open,
                 double thickness) {
-  const FrontSide front(mesh, open.open, open.seams);
+  const PseudonormalSide front(mesh, open.open, open.seams);
   tbb::parallel_for(std::size_t{0}, builder.distance.size(), [&](std::size_t slot) {
     auto phi = phiOf(builder, slot);
     for (std::size_t n = 0; n < phi.size(); ++n) {
@@ -357,7 +356,7 @@ void signCoarse(FieldBuilder& builder) {
   for (int z = 0; z <= n[2]; ++z) {
     for (int y = 0; y <= n[1]; ++y) {
       for (int x = 0; x <= n[0]; ++x, ++corner) {
-        // The last layer lies past the grid, and so outside.
+        // The last layer lies beyond the grid and thus outside.
         if (field.coarse.empty() || x == n[0] || y == n[1] || z == n[2]) continue;
         const std::int32_t slot = field.slotOf(x, y, z);
         const bool inside = slot >= 0 ? phiAt(builder, slot, 0) < 0 : slot == SurfaceField::kInside;
@@ -376,7 +375,7 @@ std::size_t assignSigns(FieldBuilder& builder, const TriangleMesh& mesh, const T
   if (open.triangles < mesh.triangles.size())
     ambiguous = Signer(builder, mesh, tree, winding, open, progress).run();
   progress.throwIfCancelled();
-  if (open.any() && thickness > 0) signPlates(builder, mesh, open, thickness);
+  if (open.any() && thickness > 0) signSheets(builder, mesh, open, thickness);
   return ambiguous;
 }
 

@@ -1,4 +1,4 @@
-// A node of a sparse grid by the block that holds it.
+// Address of a node of a sparse grid: block and index.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ inline constexpr int kBlockNodes = kBlockSide * kBlockSide * kBlockSide; // 512,
 // Block (b) holds the nodes 8 b to 8 b + 7 along each axis, also below zero.
 struct BlockNode {
   Index3 block;
-  std::size_t node; // in the block
+  std::size_t node; // index in the block
 
   template <class Integer>
   static constexpr BlockNode of(const std::array<Integer, 3>& at) noexcept {

@@ -6,11 +6,11 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kSlots = 1024; // of the hash table: a power of two, half full at most
+constexpr std::size_t kSlots = 1024; // size of the hash table: a power of two, at most half full
 constexpr std::uint16_t kNoFace = 0xFFFF;
-constexpr std::uint32_t kWalks[] = {0x30, 0x60, 0x03, 0x63, 0x06, 0x36}; // orders of the axes
+constexpr std::uint32_t kAxisOrders[] = {0x30, 0x60, 0x03, 0x63, 0x06, 0x36};
 
-// Fibonacci hashing: neighbouring faces land far apart.
+// Fibonacci hashing: neighbouring faces get distant slots.
 std::size_t slotOf(std::int32_t face) {
   return (static_cast<std::uint32_t>(face) * 2654435769U) >> 22;
 }
@@ -50,14 +50,15 @@ FaceBlock::FaceBlock(const FaceNodes& nodes) {
   std::array<std::uint16_t, kBlockNodes> walked;
   std::array<std::uint16_t, kBlockNodes> best;
   unsigned fewest = kBlockNodes + 1;
-  for (const std::uint32_t walk : kWalks) {
-    for (std::size_t node = 0; node < code.size(); ++node) walked[stepOf(node, walk)] = code[node];
+  for (const std::uint32_t axis_order : kAxisOrders) {
+    for (std::size_t node = 0; node < code.size(); ++node)
+      walked[stepOf(node, axis_order)] = code[node];
     unsigned runs = 1;
     for (std::size_t step = 1; step < walked.size(); ++step)
       runs += walked[step] != walked[step - 1];
     if (runs >= fewest) continue;
     fewest = runs;
-    walk_ = walk & 0x7FU;
+    axis_order_ = axis_order & 0x7FU;
     best = walked;
   }
   runs_ = fewest & 0x3FFU;
@@ -88,7 +89,7 @@ FaceBlock::FaceBlock(const FaceNodes& nodes) {
 FaceBlock::FaceBlock(const FaceBlock& block, std::int32_t offset)
     : starts_(block.starts_), data_(std::make_unique<std::uint8_t[]>(block.dataBytes())),
       lowest_(block.lowest_ + offset), faces_(block.faces_), runs_(block.runs_), bits_(block.bits_),
-      walk_(block.walk_), wide_(block.wide_) {
+      axis_order_(block.axis_order_), wide_(block.wide_) {
   std::memcpy(data_.get(), block.data_.get(), block.dataBytes());
 }
 

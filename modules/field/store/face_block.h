@@ -1,4 +1,4 @@
-// The nearest faces of a block's nodes (K02), held small: neighbouring nodes mostly share a face.
+// Nearest faces of a block's nodes (K02), run-length coded.
 #pragma once
 
 #include <array>
@@ -10,24 +10,24 @@
 
 namespace patina {
 
-// While a field is being made: one face a node, -1 where phi is beyond the band.
+// Used while a field is built: one face per node, -1 beyond the band.
 struct FaceNodes {
   std::array<std::int32_t, kBlockNodes> face;
 };
 
-// The same, immutable, as runs: a walk to and fro through the block, along the axis that serves
-// best, meets a face several times in a row, for the nearest face changes little along its normal.
-// Each run names one of the block's faces, which are listed once. at() is constant in time.
+// Immutable run-length code. A serpentine path through the block along the best axis keeps each
+// face for several nodes, because the nearest face changes little along its normal. Each run refers
+// to a table of the block's faces. at() takes constant time.
 class FaceBlock {
  public:
   explicit FaceBlock(const FaceNodes& nodes);
-  // The same with `offset` added to every face but -1: faces of one mesh among those of several.
+  // The same with `offset` added to every face but -1, for the combined mesh.
   FaceBlock(const FaceBlock& block, std::int32_t offset);
 
   std::int32_t at(std::size_t node) const {
-    const std::size_t step = stepOf(node, walk_);
+    const std::size_t step = stepOf(node, axis_order_);
     std::size_t run = static_cast<std::size_t>(
-        std::popcount(starts_[step / 64] << (63 - step % 64))); // at least one before any other
+        std::popcount(starts_[step / 64] << (63 - step % 64))); // at least one run starts earlier
     for (std::size_t word = 0; word < step / 64; ++word)
       run += static_cast<std::size_t>(std::popcount(starts_[word]));
     return face(code(run - 1));
@@ -35,11 +35,11 @@ class FaceBlock {
   std::size_t bytes() const { return sizeof(*this) + dataBytes(); }
 
  private:
-  // Where the walk with the given order of axes meets a node.
-  static std::size_t stepOf(std::size_t node, std::uint32_t walk) {
-    const std::size_t a = node >> (walk & 15U) & 7U, b = node >> (walk >> 4 & 7U) & 7U;
-    // The third shift: 0 + 3 + 6 in all.
-    const std::size_t c = node >> (9U - (walk & 15U) - (walk >> 4 & 7U)) & 7U;
+  // Returns the position of a node on the path with the given axis order.
+  static std::size_t stepOf(std::size_t node, std::uint32_t axis_order) {
+    const std::size_t a = node >> (axis_order & 15U) & 7U, b = node >> (axis_order >> 4 & 7U) & 7U;
+    // The third shift completes the sum 0 + 3 + 6.
+    const std::size_t c = node >> (9U - (axis_order & 15U) - (axis_order >> 4 & 7U)) & 7U;
     const std::size_t row = c & 1U ? 7U - b : b;
     return 64 * c + 8 * row + (row & 1U ? 7U - a : a);
   }
@@ -57,13 +57,13 @@ class FaceBlock {
   }
   std::int32_t face(std::size_t code) const;
 
-  std::array<std::uint64_t, kBlockNodes / 64> starts_{}; // by step of the walk: a run begins
-  std::unique_ptr<std::uint8_t[]> data_;                 // faces less lowest_, then a code a run
+  std::array<std::uint64_t, kBlockNodes / 64> starts_{}; // bit i: a run begins at step i
+  std::unique_ptr<std::uint8_t[]> data_; // table of faces minus lowest_, then a code per run
   std::int32_t lowest_ = 0;
   std::uint32_t faces_ : 10 = 0, runs_ : 10 = 0;
-  std::uint32_t bits_ : 4 = 0; // of a code, at most 9
-  std::uint32_t walk_ : 7 = 0; // bits by which a node's index is shifted for its first two axes
-  std::uint32_t wide_ : 1 = 0; // faces take four bytes instead of two
+  std::uint32_t bits_ : 4 = 0;       // bits of a code, at most 9
+  std::uint32_t axis_order_ : 7 = 0; // shifts of a node's index for its first two axes
+  std::uint32_t wide_ : 1 = 0;       // faces take four bytes instead of two
 };
 
 } // namespace patina

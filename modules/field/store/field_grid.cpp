@@ -30,7 +30,7 @@ double voxelFor(double longest, const FieldSpec& spec) {
 FieldSpec widened(const FieldSpec& spec, const Box3& box, double reach, double margin) {
   FieldSpec wide = spec;
   if (!(reach > 0) || box.isEmpty()) return wide;
-  // With a resolution N, voxel = L / (N - 2 band): band >= reach / voxel + margin is linear in
+  // At resolution N, voxel = L / (N - 2 band), so that band >= reach / voxel + margin is linear in
   // band.
   const double longest = box.sizes().maxCoeff();
   const double band =
@@ -53,10 +53,10 @@ FieldGrid gridAround(const Box3& box, const FieldSpec& spec) {
   for (int axis = 0; axis < 3; ++axis) {
     // The slack absorbs the rounding of the division, so that a scaled box gets the same count.
     cells[axis] = std::ceil(size[axis] / grid.voxel + 2 * spec.band - 1e-6);
-    if (!(cells[axis] < kMostNodes))
+    if (!(cells[axis] < kMaxNodes))
       throw Error("field: a voxel of " + formatLength(grid.voxel) + " needs " +
-                  formatNumber(cells[axis]) + " cells on a side; the most is " +
-                  std::to_string(kMostNodes - 1) + "; choose a larger voxel or --unit");
+                  formatNumber(cells[axis]) + " cells on a side; the maximum is " +
+                  std::to_string(kMaxNodes - 1) + "; choose a larger voxel or --unit");
     grid.nodes[static_cast<std::size_t>(axis)] = static_cast<int>(cells[axis]) + 1;
   }
   // Centred, so that a symmetric shape gets a symmetric field.

@@ -1,15 +1,15 @@
-// The regular grid under a field.
+// Regular grid of a field.
 #pragma once
 
 #include <array>
 #include <optional>
 
 #include "core/types.h"
-#include "geometry/mesh/open_parts.h"
+#include "geometry/sides/open_parts.h"
 
 namespace patina {
 
-inline constexpr int kMostNodes = 4096; // a side
+inline constexpr int kMaxNodes = 4096; // a side
 
 // Node (i, j, k) lies at origin + voxel * (i, j, k). "Grid coordinates" of p: (p - origin) / voxel.
 struct FieldGrid {
@@ -26,19 +26,18 @@ struct FieldGrid {
 };
 
 struct FieldSpec {
-  int resolution = 150;             // cells along the longest side, band included on both ends
-  std::optional<double> voxel;      // [m]; takes the place of resolution
-  double band = 8;                  // voxels on each side of the surface in which nodes are stored
-  OpenSides sides = OpenSides::automatic; // of the mesh's parts with a rim
+  int resolution = 150;        // cells along the longest side, band included on both ends
+  std::optional<double> voxel; // [m]; replaces the resolution
+  double band = 8;             // voxels on each side of the surface in which nodes are stored
+  OpenSides sides = OpenSides::automatic; // sides of the mesh's parts with a boundary
 };
 
-// `spec` with its band widened, where need be, so that `reach` [m] and `margin` voxels more lie in
-// it: what is felt that far from the surface. The resolution stays, so that a wider band makes a
-// larger voxel.
+// Returns `spec` with its band widened, if necessary, by `reach` [m] and `margin` voxels. The
+// resolution is unchanged, so that a wider band makes larger voxels.
 FieldSpec widened(const FieldSpec& spec, const Box3& box, double reach, double margin);
 
-// Box grown by the band on each side. With a resolution N: h = longest / (N - 2 band).
-// Throws Error if N <= 2 band + 2, if the voxel is not positive, or if the grid would exceed 4096 a
+// Returns the grid of a box grown by the band on each side. At resolution N: h = longest / (N - 2
+// band). Throws Error if N <= 2 band + 2, if the voxel is not positive, or beyond 4096 nodes a
 // side.
 FieldGrid gridAround(const Box3& box, const FieldSpec& spec);
 

@@ -18,8 +18,8 @@ void NodeReader::unpack(std::size_t slot) const {
 }
 
 float NodeReader::phiAt(int i, int j, int k) const {
-  const SurfaceField::Place place = field_.placeOf(i, j, k);
-  return place.slot < 0 ? phiBeyond(place.slot)
+  const SurfaceField::NodeAddress place = field_.placeOf(i, j, k);
+  return place.slot < 0 ? backgroundOf(place.slot)
                         : block(static_cast<std::size_t>(place.slot)).phi[place.index];
 }
 

@@ -1,4 +1,4 @@
-// Many reads of a field's distances: a block is unpacked when it is first read.
+// Fast repeated reads of a field's distances: a block is unpacked at its first read.
 #pragma once
 
 #include <atomic>
@@ -10,9 +10,9 @@
 
 namespace patina {
 
-// A view: the field must outlive it. Reserves 2 kB for each block of the field at once; the system
-// takes memory only for those that are read. Any thread, several at once, except the servo's: the
-// first read of a block unpacks it, and who reads it meanwhile waits.
+// View of a field, which must outlive it. Reserves 2 kB of addresses per block; the system
+// allocates memory only for blocks that are read. Any threads, several at once, except the servo's:
+// the first read of a block unpacks it while other readers of that block wait.
 class NodeReader {
  public:
   explicit NodeReader(const SurfaceField& field);
@@ -22,7 +22,7 @@ class NodeReader {
     if (state_[slot].load(std::memory_order_acquire) != kRead) unpack(slot);
     return nodes_[slot];
   }
-  // Outside the grid or in a block that is not stored: +-kBeyondBand.
+  // Returns +-kBackground outside the grid or in an unstored block.
   float phiAt(int i, int j, int k) const;
 
  private:
@@ -30,8 +30,8 @@ class NodeReader {
   void unpack(std::size_t slot) const;
 
   const SurfaceField& field_;
-  std::unique_ptr<DistanceNodes[]> nodes_;               // by slot
-  mutable std::vector<std::atomic<std::uint8_t>> state_; // by slot
+  std::unique_ptr<DistanceNodes[]> nodes_;               // per slot
+  mutable std::vector<std::atomic<std::uint8_t>> state_; // per slot
 };
 
 } // namespace patina

@@ -12,17 +12,17 @@
 namespace patina {
 namespace {
 
-constexpr double kMillimetre = 1e-3; // of the drawing below
-constexpr double kLength = 0.1;      // of the model [m]
+constexpr double kMillimetre = 1e-3; // unit of the drawing below
+constexpr double kLength = 0.1;      // length of the model [m]
 
-// Two balls and the cone that touches both; drawn in millimetres, x forward, z up.
+// Two balls and the cone tangent to both; in millimetres, x forward, z up.
 struct Limb {
   Vec3 a;
   double radius_a;
   Vec3 b;
   double radius_b;
-  double blend;  // width of the smooth joint with what comes before [mm]
-  bool mirrored; // a pair, on both sides of y = 0
+  double blend;  // width of the smooth joint to the previous limbs [mm]
+  bool mirrored; // second copy at -y
 };
 
 double distanceTo(const Limb& limb, const Vec3& p) {
@@ -31,7 +31,7 @@ double distanceTo(const Limb& limb, const Vec3& p) {
   const Vec3 along = axis / length;
   const double x = along.dot(p - limb.a);
   const double y = (p - limb.a - x * along).norm();
-  // The cone's side leans by this slope; the foot of p slides along it.
+  // The cone's side leans by this slope, along which the foot point of p shifts.
   const double slope = shrink / std::sqrt(length * length - shrink * shrink);
   const double foot = x - y * slope;
   if (foot <= 0) return (p - limb.a).norm() - limb.radius_a;
@@ -40,7 +40,7 @@ double distanceTo(const Limb& limb, const Vec3& p) {
   return y * std::sqrt(1 - sine * sine) + x * sine - limb.radius_a;
 }
 
-// Minimum with a rounded joint. Its derivatives are positive and sum to one, so that it stays
+// Minimum with a rounded joint. Its derivatives are positive and add up to one, so that it stays
 // 1-Lipschitz.
 double smoothMin(double a, double b, double width) {
   const double h = std::max(width - std::abs(a - b), 0.0);
@@ -103,7 +103,7 @@ double dinosaurAt(const Vec3& p) {
 } // namespace
 
 TriangleMesh dinosaur(int resolution) {
-  // Only the cells that the surface crosses are needed.
+  // Only cells that the surface crosses are needed.
   const double band = 2;
   const Box3 drawn(Vec3(-80, -20, -2), Vec3(56, 20, 76));
   const FieldGrid grid =

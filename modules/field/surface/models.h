@@ -1,4 +1,4 @@
-// Models that need a field to be made.
+// Models made by means of a field.
 #pragma once
 
 #include "geometry/mesh/triangle_mesh.h"

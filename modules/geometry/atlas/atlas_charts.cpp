@@ -13,18 +13,18 @@
 namespace patina {
 namespace {
 
-constexpr double kNeedle = 1e-10; // height over length, below which a face is taken for a line
-constexpr float kSmallCosine = static_cast<float>(kLeastCosine) + 1e-4f;
+constexpr double kNeedle = 1e-10; // height over length; a thinner face counts as a line
+constexpr float kSmallCosine = static_cast<float>(kMinCosine) + 1e-4f;
 constexpr float kLargeCosine = 0.8f;
 
-// Planes that are tried while charts grow: every direction is within 28 degrees of one.
+// Candidate planes of a growing chart: every direction is within 28 degrees of one.
 constexpr std::size_t kPlanes = 26;
-using Cone = std::array<float, kPlanes>; // least cosine between the faces and each plane
+using Cone = std::array<float, kPlanes>; // smallest cosine between the faces and each plane
 
 std::array<Eigen::Vector3f, kPlanes> planes() {
   std::array<Eigen::Vector3f, kPlanes> result;
   std::size_t count = 0;
-  for (int corners = 1; corners <= 3; ++corners) // axes first: the six that label
+  for (int corners = 1; corners <= 3; ++corners) // axes first: they label the faces
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
         for (int z = -1; z <= 1; ++z)
@@ -41,11 +41,11 @@ std::int8_t axisOf(const Vec3& normal) {
   return static_cast<std::int8_t>(2 * axis + (normal[axis] < 0 ? 1 : 0));
 }
 
-// Connected faces of one label, as lists one after another.
+// Connected faces of one label, stored region after region.
 struct Regions {
   std::vector<std::int32_t> of;        // region of each face, -1 without area
   std::vector<std::int32_t> faces;     // sorted by region
-  std::vector<std::size_t> offsets{0}; // into faces
+  std::vector<std::size_t> offsets{0}; // offset of each region in faces
   std::size_t count() const { return offsets.size() - 1; }
 };
 
@@ -74,7 +74,7 @@ Regions regionsOf(const AtlasSurface& surface) {
   return regions;
 }
 
-// Joins regions, the smallest first, across their longest common border.
+// Joins regions, the smallest first, across their longest common boundary.
 class Joiner {
  public:
   Joiner(const AtlasSurface& surface, const Regions& regions)
@@ -123,7 +123,7 @@ class Joiner {
       if (parent_[index(next.region)] != next.region || area_[index(next.region)] != next.area)
         continue;
       const std::int32_t into = bestNeighbour(next.region, small_area);
-      if (into == kNone) continue; // for good: neighbours' cones only become narrower
+      if (into == kNone) continue; // Final: the neighbours' cones only become narrower.
       queue.push({merge(next.region, into), find(into)});
     }
   }
@@ -135,7 +135,7 @@ class Joiner {
     }
     return r;
   }
-  // The plane with the least stretch, and the cosine there.
+  // Returns the plane with the least stretch and the smallest cosine there.
   std::pair<Vec3, double> plane(std::int32_t root) const {
     const Cone& cone = cone_[index(root)];
     const auto best = std::max_element(cone.begin(), cone.end());
@@ -196,7 +196,7 @@ class Joiner {
   std::vector<std::vector<Link>> links_;
 };
 
-// The mean normal fits a flat or symmetric chart exactly.
+// Replaces the plane's normal by the mean normal, which is exact for a flat or symmetric chart.
 void refitPlane(const AtlasSurface& surface, Chart& chart, double cosine) {
   Vec3 mean = Vec3::Zero();
   for (const std::int32_t f : chart.faces)
@@ -209,12 +209,12 @@ void refitPlane(const AtlasSurface& surface, Chart& chart, double cosine) {
   if (least > cosine) chart.normal = mean;
 }
 
-// The layers of a mesh that holds faces more than once: 0 for the first of a place, 1 for the first
-// that faces the other way there, and kTwin for the others.
-constexpr std::int8_t kTwin = 2;
+// Layers of a mesh with duplicate faces: 0 for the first face of a set of duplicates, 1 for the
+// first of opposite orientation, kDuplicate for the others.
+constexpr std::int8_t kDuplicate = 2;
 struct Layers {
-  std::vector<std::int8_t> of; // each face
-  std::vector<AtlasSurface::Twin> twins;
+  std::vector<std::int8_t> of; // layer of each face
+  std::vector<AtlasSurface::Duplicate> duplicates;
   bool has_back = false; // a face is in layer 1
 };
 
@@ -222,7 +222,7 @@ Layers layersOf(const std::vector<Triangle>& triangles) {
   struct Place {
     Triangle sorted;
     std::int32_t face;
-    bool odd; // the face runs through its vertices against their order
+    bool odd; // the face's corners are in odd permutation
     bool operator<(const Place& other) const {
       return std::tie(sorted, face) < std::tie(other.sorted, other.face);
     }
@@ -246,19 +246,19 @@ Layers layersOf(const std::vector<Triangle>& triangles) {
       const Place& next = places[last];
       const Place* same = next.odd == places[first].odd ? &places[first] : back;
       if (same)
-        layers.twins.push_back({next.face, same->face});
+        layers.duplicates.push_back({next.face, same->face});
       else
         back = &next;
-      layers.of[index(next.face)] = same ? kTwin : 1;
+      layers.of[index(next.face)] = same ? kDuplicate : 1;
     }
     layers.has_back = layers.has_back || back;
   }
   return layers;
 }
 
-// Neighbours within each layer: the back of a sheet is a surface of its own.
+// Finds neighbours within each layer, so that the back of a sheet is a surface of its own.
 Adjacency adjacencyOf(const TriangleMesh& mesh, const Layers& layers) {
-  if (layers.twins.empty() && !layers.has_back) return adjacency(mesh);
+  if (layers.duplicates.empty() && !layers.has_back) return adjacency(mesh);
   const auto only = [&](std::int8_t layer) {
     TriangleMesh part{mesh.positions, mesh.triangles, {}};
     for (std::size_t f = 0; f < part.triangles.size(); ++f)
@@ -303,7 +303,7 @@ AtlasSurface atlasSurface(const TriangleMesh& mesh) {
         std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
     const double doubled = (b - a).cross(c - a).norm();
     surface.normals[f] = Vec3::Zero();
-    if (layers.of[f] != kTwin && doubled > kNeedle * longest2 &&
+    if (layers.of[f] != kDuplicate && doubled > kNeedle * longest2 &&
         doubled < std::numeric_limits<double>::infinity()) {
       surface.normals[f] = faceNormal(welded, f);
       surface.areas[f] = doubled / 2;
@@ -319,7 +319,7 @@ AtlasSurface atlasSurface(const TriangleMesh& mesh) {
   });
   surface.positions = std::move(welded.positions);
   surface.triangles = std::move(welded.triangles);
-  surface.twins = std::move(layers.twins);
+  surface.duplicates = std::move(layers.duplicates);
   return surface;
 }
 

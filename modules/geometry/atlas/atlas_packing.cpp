@@ -2,19 +2,127 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <vector>
 
 #include <tbb/parallel_for.h>
-
-#include "geometry/atlas/bit_grid.h"
 
 namespace patina {
 namespace {
 
-constexpr std::size_t kCarefully = 400; // charts that are tried from the bottom and in every turn
+// Occupancy of a square grid, one bit a cell, for packing shapes.
 
-// Counter-clockwise.
+// Cells [from, to) of a row.
+struct CellRun {
+  int row, from, to;
+};
+
+// A shape as runs with rows ascending from 0; its box is `width` x `height` cells.
+struct CellShape {
+  std::vector<CellRun> runs;
+  int width = 0, height = 0;
+};
+
+struct CellPlace {
+  int x = 0, y = 0;
+};
+
+class BitGrid {
+ public:
+  // Shapes stay `margin` cells away from the sides and more than `gap` cells from each other.
+  BitGrid(int size, int margin, int gap);
+
+  // Returns the lowest free position, and the leftmost in its row, from `first_row` to `last_top`.
+  std::optional<CellPlace> place(const CellShape& shape, int first_row, int last_top) const;
+  void add(const CellShape& shape, const CellPlace& at);
+  int margin() const { return margin_; }
+  int size() const { return size_; }
+
+ private:
+  std::uint64_t* row(int y) { return bits_.data() + static_cast<std::size_t>(y) * words_; }
+  const std::uint64_t* row(int y) const {
+    return bits_.data() + static_cast<std::size_t>(y) * words_;
+  }
+
+  int size_, margin_, gap_;
+  std::size_t words_;
+  std::vector<std::uint64_t> bits_; // cells that shapes or their gaps occupy
+  std::vector<bool> row_used_;
+};
+
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+// Computes to |= from >> shift: bit x of `to` gets bit x + shift.
+void orShifted(std::uint64_t* to, const std::uint64_t* from, std::size_t words, int shift) {
+  const std::size_t whole = static_cast<std::size_t>(shift) / 64;
+  const int rest = shift % 64;
+  for (std::size_t k = 0; k + whole < words; ++k) {
+    std::uint64_t value = from[k + whole] >> rest;
+    if (rest > 0 && k + whole + 1 < words) value |= from[k + whole + 1] << (64 - rest);
+    to[k] |= value; // Reads never lie before the last write.
+  }
+}
+
+void setBits(std::uint64_t* bits, int from, int to) {
+  while (from < to) {
+    const int end = std::min(to, (from / 64 + 1) * 64);
+    const std::uint64_t mask = (end - from == 64 ? kAll : (std::uint64_t{1} << (end - from)) - 1);
+    bits[from / 64] |= mask << (from % 64);
+    from = end;
+  }
+}
+
+BitGrid::BitGrid(int size, int margin, int gap)
+    : size_(size), margin_(margin), gap_(gap), words_(static_cast<std::size_t>(size + 63) / 64),
+      bits_(words_ * static_cast<std::size_t>(size), 0),
+      row_used_(static_cast<std::size_t>(size), false) {}
+
+std::optional<CellPlace> BitGrid::place(const CellShape& shape, int first_row, int last_top) const {
+  const int columns = size_ - 2 * margin_ - shape.width + 1; // number of possible first columns
+  if (columns <= 0) return std::nullopt;
+  std::vector<std::uint64_t> never(words_, 0), blocked(words_), spread(words_);
+  setBits(never.data(), 0, margin_);
+  setBits(never.data(), margin_ + columns, static_cast<int>(words_) * 64);
+  const int last = std::min(size_ - margin_, last_top) - shape.height;
+  for (int y = std::max(first_row, margin_); y <= last; ++y) {
+    blocked = never;
+    bool full = false;
+    for (const CellRun& run : shape.runs) {
+      if (!row_used_[static_cast<std::size_t>(y + run.row)]) continue;
+      const std::uint64_t* taken = row(y + run.row);
+      std::copy(taken, taken + words_, spread.begin());
+      const int length = run.to - run.from;
+      int have = 1; // Bit x of spread is set if any of the cells x .. x + have - 1 is.
+      for (; 2 * have <= length; have *= 2) orShifted(spread.data(), spread.data(), words_, have);
+      if (have < length) orShifted(spread.data(), spread.data(), words_, length - have);
+      orShifted(blocked.data(), spread.data(), words_, run.from);
+      full = std::all_of(blocked.begin(), blocked.end(),
+                         [](std::uint64_t word) { return word == kAll; });
+      if (full) break;
+    }
+    if (full) continue;
+    for (std::size_t k = 0; k < words_; ++k)
+      for (int bit = 0; bit < 64 && blocked[k] != kAll; ++bit)
+        if (!(blocked[k] >> bit & 1)) return CellPlace{static_cast<int>(k) * 64 + bit, y};
+  }
+  return std::nullopt;
+}
+
+void BitGrid::add(const CellShape& shape, const CellPlace& at) {
+  for (const CellRun& run : shape.runs)
+    for (int y = std::max(0, at.y + run.row - gap_);
+         y <= std::min(size_ - 1, at.y + run.row + gap_); ++y) {
+      setBits(row(y), std::max(0, at.x + run.from - gap_), std::min(size_, at.x + run.to + gap_));
+      row_used_[static_cast<std::size_t>(y)] = true;
+    }
+}
+
+constexpr std::size_t kCarefully = 400; // charts tried in all rotations from row 0
+
+// Returns the convex hull, counter-clockwise.
 std::vector<Vec2> hullOf(const ChartOutline& outline) {
   std::vector<Vec2> points;
   for (const auto& edge : outline.edges) points.push_back(edge[0]);
@@ -36,12 +144,12 @@ std::vector<Vec2> hullOf(const ChartOutline& outline) {
   return hull;
 }
 
-// The turn whose box is smallest; one of its sides lies along the hull.
+// Returns the rotation with the smallest bounding box, one side of which lies along the hull.
 Eigen::Rotation2Dd smallestBox(const std::vector<Vec2>& hull) {
-  constexpr std::size_t kMostTried = 90; // a round hull has no better side than the others
+  constexpr std::size_t kMaxTried = 90; // enough for a round hull
   Eigen::Rotation2Dd best(0);
   double least = std::numeric_limits<double>::infinity();
-  const std::size_t stride = hull.size() / kMostTried + 1;
+  const std::size_t stride = hull.size() / kMaxTried + 1;
   for (std::size_t k = 0; k < hull.size(); k += stride) {
     const Vec2 along = hull[(k + 1) % hull.size()] - hull[k];
     if (!(along.norm() > 0)) continue;
@@ -59,7 +167,7 @@ Eigen::Rotation2Dd smallestBox(const std::vector<Vec2>& hull) {
 
 struct Turned {
   Eigen::Affine2d
-      aligned_from_plane; // the smallest box's corner at the origin, longer side along x
+      aligned_from_plane; // moves the corner of the smallest box to the origin, longer side along x
   Vec2 size;
 };
 
@@ -88,13 +196,13 @@ struct Mask {
   }
 };
 
-// Those its border crosses, and those inside: cells that the border spares are so wholly or not.
+// Marks the cells that the boundary crosses and those inside, which lie there as a whole.
 Mask maskOf(const ChartOutline& outline, const Eigen::Affine2d& cells_from_plane,
             const Vec2& size) {
   Mask mask{static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1, {}};
   mask.cells.assign(static_cast<std::size_t>(mask.width) * static_cast<std::size_t>(mask.height),
                     0);
-  Mask flips = mask; // 1 = from this cell's centre on the inside is outside and vice versa
+  Mask flips = mask; // 1 = inside and outside change at this cell's centre
   const auto cell = [](double at, int count) {
     return std::clamp(static_cast<int>(std::floor(at)), 0, count - 1);
   };
@@ -130,7 +238,7 @@ Mask quarterTurned(Mask& mask) {
   return result;
 }
 
-// What the above does to points.
+// Returns the point transform that belongs to quarterTurned().
 Eigen::Affine2d quarterTurn(const Mask& mask) {
   Eigen::Affine2d turn;
   turn.matrix() << 0, -1, mask.height, 1, 0, 0, 0, 0, 1;
@@ -157,7 +265,7 @@ struct Problem {
   double texelsPerCell() const { return static_cast<double>(image_size) / cells; }
 };
 
-// Empty if a chart finds no place.
+// Returns an empty list if a chart does not fit.
 std::vector<Eigen::Affine2d> placedAt(const Problem& problem, double scale) {
   const double unit = problem.texelsPerCell();
   BitGrid grid(problem.cells, static_cast<int>(std::ceil(problem.gap / 2 / unit)),
@@ -183,7 +291,7 @@ std::vector<Eigen::Affine2d> placedAt(const Problem& problem, double scale) {
       if (!place && !carefully) place = grid.place(shape, 0, top);
       if (!place) continue;
       best = place;
-      top = place->y + shape.height - 1; // the next turn must lie lower
+      top = place->y + shape.height - 1; // The next rotation must lie lower.
       best_shape = std::move(shape);
       result[c] = Eigen::Scaling(unit) * Eigen::Translation2d(best->x, best->y) * cells_from_plane;
     }
@@ -195,7 +303,7 @@ std::vector<Eigen::Affine2d> placedAt(const Problem& problem, double scale) {
 }
 
 double areaOf(const ChartOutline& outline) {
-  double doubled = 0; // relative to one point of it: charts lie anywhere on their planes
+  double doubled = 0; // about a point of the chart
   for (const auto& edge : outline.edges)
     doubled += cross(edge[0] - outline.edges[0][0], edge[1] - outline.edges[0][0]);
   return doubled / 2;
@@ -203,20 +311,20 @@ double areaOf(const ChartOutline& outline) {
 
 } // namespace
 
-std::size_t mostCharts(int image_size, int gap) {
+std::size_t maxCharts(int image_size, int gap) {
   const double cells = std::min(image_size, 1024), unit = image_size / cells;
   const double slot = 1 + std::ceil(gap / unit);
   return static_cast<std::size_t>(std::max(1.0, 0.5 * (cells / slot) * (cells / slot)));
 }
 
 Packing packed(const std::vector<ChartOutline>& charts, int image_size, int gap) {
-  const int most_cells = charts.size() <= 256 ? 256 : charts.size() <= 4096 ? 512 : 1024;
+  const int max_cells = charts.size() <= 256 ? 256 : charts.size() <= 4096 ? 512 : 1024;
   Problem problem{charts,
                   std::vector<Turned>(charts.size()),
                   std::vector<std::size_t>(charts.size()),
                   image_size,
                   gap,
-                  std::min(image_size, most_cells)};
+                  std::min(image_size, max_cells)};
   tbb::parallel_for(std::size_t{0}, charts.size(),
                     [&](std::size_t c) { problem.turned[c] = turned(charts[c]); });
   std::iota(problem.order.begin(), problem.order.end(), std::size_t{0});
@@ -233,7 +341,7 @@ Packing packed(const std::vector<ChartOutline>& charts, int image_size, int gap)
     result.texel_from_plane = placedAt(problem, 0);
     return result;
   }
-  // Rounds of kTried scales at once, in falling order: what is found does not hang on the threads.
+  // Tries kTried scales at once, in descending order: the result does not depend on the threads.
   constexpr std::size_t kTried = 3;
   double low = 0, high = std::min(image_size / std::sqrt(sum), 1.5 * image_size / longest);
   for (int round = 0; round < 4; ++round) {

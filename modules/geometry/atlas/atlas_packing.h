@@ -8,23 +8,23 @@
 
 namespace patina {
 
-// The border of a chart on its plane, in any order; its inside is where the border's crossings on
-// the way out are odd.
+// Boundary edges of a chart on its plane, in any order. A point is inside if a ray from it crosses
+// the boundary an odd number of times.
 struct ChartOutline {
   std::vector<std::array<Vec2, 2>> edges;
 };
 
 struct Packing {
-  double scale = 0; // texels per unit of the outlines; 0 = they do not fit, however small
-  std::vector<Eigen::Affine2d> texel_from_plane; // a turn, `scale`, and a shift; no reflection
+  double scale = 0; // texels per unit of the outlines; 0 = they do not fit at any scale
+  std::vector<Eigen::Affine2d> texel_from_plane; // rotation, `scale` and translation; no reflection
 };
 
-// All charts at one scale, the largest found by bisection, `gap` texels apart and gap / 2 from the
-// image's sides. By their shapes, not their boxes: charts fill each other's bays and holes. The
-// order is the longest first. Deterministic.
+// Packs all charts at one scale, the largest that bisection finds, `gap` texels apart and gap / 2
+// from the image's sides. Shapes are compared, not bounding boxes, so that charts fill each other's
+// concavities and holes. The longest chart is placed first. Deterministic.
 Packing packed(const std::vector<ChartOutline>& charts, int image_size, int gap);
 
-// No more charts than this should be tried: tiny ones would leave the image to their gaps.
-std::size_t mostCharts(int image_size, int gap);
+// Returns the largest useful number of charts: with more, gaps would fill the image.
+std::size_t maxCharts(int image_size, int gap);
 
 } // namespace patina

@@ -14,13 +14,13 @@
 namespace patina {
 namespace {
 
-constexpr int kBandRows = 32; // one task each; small enough that 512 rows feed several threads
+constexpr int kBandRows = 32; // one task a band; small enough that 512 rows feed several threads
 constexpr double kBorder = kGutter;
-constexpr double kMostTexels = 1 << 20; // beyond any image: the exact comparison needs a bound
-using Corners = std::array<Vec2, 3>;    // in texels
+constexpr double kMaxTexels = 1 << 20; // larger than any image; a bound for the exact comparison
+using Corners = std::array<Vec2, 3>;   // [texels]
 
-// On a grid of 2^-32 texels, so that differences are exact and their products can be compared
-// exactly: the rule that two faces at an edge share no centre and miss none has no tolerance.
+// Rounds to a grid of 2^-32 texels, on which products of differences compare exactly: each centre
+// at a common edge belongs to exactly one of two faces, without a tolerance.
 Corners inTexels(const Corners& uv, int width, int height) {
   constexpr double kGrid = 4294967296.0;
   Corners result;
@@ -32,11 +32,11 @@ Corners inTexels(const Corners& uv, int width, int height) {
 
 bool usable(const Corners& corners) {
   return std::all_of(corners.begin(), corners.end(), [](const Vec2& p) {
-    return std::abs(p[0]) < kMostTexels && std::abs(p[1]) < kMostTexels; // false for NaN
+    return std::abs(p[0]) < kMaxTexels && std::abs(p[1]) < kMaxTexels; // false for NaN
   });
 }
 
-// a1 a2 <= b1 b2, exactly for factors on the grid.
+// Returns a1 a2 <= b1 b2, exactly for factors on the grid.
 bool productAtMost(double a1, double a2, double b1, double b2) {
   const double a = a1 * a2, b = b1 * b2;
   const double difference = a - b;
@@ -44,7 +44,7 @@ bool productAtMost(double a1, double a2, double b1, double b2) {
   return difference + (std::fma(a1, a2, -a) - std::fma(b1, b2, -b)) <= 0;
 }
 
-// First texel of a row whose centre is on the edge or right of it; low.y <= y < high.y.
+// Returns the first texel of a row whose centre is on the edge or right of it; low.y <= y < high.y.
 int firstFrom(const Vec2& low, const Vec2& high, double y) {
   const Vec2 along = high - low;
   const double x = low[0] + along[0] * ((y - low[1]) / along[1]) - 0.5;
@@ -59,10 +59,10 @@ int firstFrom(const Vec2& low, const Vec2& high, double y) {
 }
 
 struct Span {
-  int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min(); // [ , )
+  int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min();
 };
 
-// Centres of row j in the face: lower and left edges belong to it, upper and right ones do not.
+// Returns the centres of row j in the face, whose lower and left edges are part of it.
 Span coveredIn(const Corners& corners, int j) {
   const double y = j + 0.5;
   Span span;
@@ -77,7 +77,7 @@ Span coveredIn(const Corners& corners, int j) {
   return span;
 }
 
-// Texels of row j that can be within reach of the face.
+// Returns the texels of row j that can be within the border of the face.
 Span reachedIn(const Corners& corners, int j) {
   const double low = j + 0.5 - kBorder, high = j + 0.5 + kBorder;
   double from = std::numeric_limits<double>::infinity(), to = -from;
@@ -102,7 +102,7 @@ double squaredDistanceToBorder(const Corners& corners, const Vec2& p) {
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 *a = &corners[k], *b = &corners[(k + 1) % 3];
-    // From one end for both faces at an edge: they are equally near to the last bit.
+    // Starts at one end for both faces of an edge, so that their distances are equal bit for bit.
     if (std::tie((*b)[1], (*b)[0]) < std::tie((*a)[1], (*a)[0])) std::swap(a, b);
     const Vec2 edge = *b - *a;
     const double length2 = edge.squaredNorm();
@@ -113,7 +113,7 @@ double squaredDistanceToBorder(const Corners& corners, const Vec2& p) {
   return best;
 }
 
-// Faces of each band of rows that they can own texels in, ascending.
+// Faces that can own texels in each band of rows, ascending.
 struct Bands {
   std::vector<std::size_t> offsets;
   std::vector<std::int32_t> faces;
@@ -155,7 +155,7 @@ class BandPainter {
         distance2_(index(map.width) * index(last_row_ - first_row),
                    std::numeric_limits<float>::infinity()) {}
 
-  // All faces of a band cover before any of them reaches out.
+  // Must run for all faces of a band before any claims texels outside its area.
   void cover(std::int32_t face) {
     const Corners corners = inTexels(uvs_[index(face)], map_.width, map_.height);
     forRows(corners, 1, [&](int j) {
@@ -203,7 +203,7 @@ class BandPainter {
   const CornerUvs& uvs_;
   TexelMap& map_;
   int first_row_, last_row_;
-  std::vector<float> distance2_; // -1 = covered
+  std::vector<float> distance2_; // [texels squared]; -1 = covered
 };
 
 } // namespace

@@ -11,27 +11,25 @@
 
 #include "geometry/atlas/atlas_charts.h"
 #include "geometry/atlas/atlas_packing.h"
-#include "geometry/atlas/chart_overlap.h"
 #include "geometry/atlas/uv_overlap.h"
 #include "geometry/mesh/adjacency.h"
 
 namespace patina {
 namespace {
 
-constexpr int kGap = 2 * kGutter; // texels between charts
-// Charts with less than this many texels are joined to neighbours even at the price of stretch:
-// their gaps would cost more than they show.
+constexpr int kGap = 2 * kGutter; // [texels] between charts
+// Smaller charts [texels] join neighbours despite stretch: their gaps would take more room.
 constexpr double kSmallChart = 256;
-constexpr double kLeastShare = 0.4;   // of the image that charts fill, as is hoped for
-constexpr double kMostLost = 1e-3;    // of the surface, without a place in the unit square
-constexpr double kLeastFilled = 0.01; // of the unit square
-// Sides of the image, about: longer charts would make the others small.
+constexpr double kMinShare = 0.4; // expected fraction of the image that charts fill
+constexpr double kMaxLost = 1e-3; // largest fraction of the surface without area in the unit square
+constexpr double kMinFilled = 0.01; // smallest fraction of the unit square that must be filled
+// Largest chart [image sides]; a longer one would make the others small.
 constexpr double kLongest = 0.95;
 
 std::vector<Chart> chartsOf(const AtlasSurface& surface, int image_size) {
   const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
   std::vector<Chart> grown = grownCharts(surface, 2 * kSmallChart * area / image_size / image_size);
-  const double side = std::sqrt(area / kLeastShare); // of the whole image, about
+  const double side = std::sqrt(area / kMinShare); // [m], estimated side of the whole image
   const ChartLimits limits{kLongest * side, kGap * side / image_size};
   std::vector<std::vector<Chart>> pieces(grown.size());
   tbb::parallel_for(std::size_t{0}, grown.size(), [&](std::size_t c) {
@@ -49,7 +47,7 @@ double areaOf(const AtlasSurface& surface, const Chart& chart) {
   return sum;
 }
 
-// The largest first.
+// Sorts the largest first.
 void sortByArea(const AtlasSurface& surface, std::vector<Chart>& charts) {
   std::vector<std::pair<double, std::size_t>> order;
   for (const Chart& chart : charts) order.emplace_back(-areaOf(surface, chart), order.size());
@@ -79,10 +77,10 @@ std::vector<ChartOutline> outlinesOf(const AtlasSurface& surface,
   return outlines;
 }
 
-// Fewer charts until what is left can use the image.
+// Removes the smallest charts until the others can use the image.
 Packing packedOrFewer(const AtlasSurface& surface, std::vector<Chart>& charts, int image_size) {
   sortByArea(surface, charts);
-  charts.resize(std::min(charts.size(), mostCharts(image_size, kGap)));
+  charts.resize(std::min(charts.size(), maxCharts(image_size, kGap)));
   for (;;) {
     Packing packing = packed(outlinesOf(surface, charts), image_size, kGap);
     const double texel = packing.scale > 0 ? 1 / packing.scale : 0;
@@ -100,9 +98,8 @@ Packing packedOrFewer(const AtlasSurface& surface, std::vector<Chart>& charts, i
   }
 }
 
-// Faces that no chart holds show the place of a vertex that a chart holds: one of theirs, or of the
-// faces on the way there.
-void pointTheRest(const AtlasSurface& surface, std::vector<bool>& placed, CornerUvs& uvs) {
+// Assigns each face without a chart the UV of a charted vertex found by breadth-first search.
+void assignDegenerateUvs(const AtlasSurface& surface, std::vector<bool>& placed, CornerUvs& uvs) {
   std::vector<Vec2> place(surface.positions.size());
   std::vector<bool> known(place.size(), false);
   std::vector<std::int32_t> queue;
@@ -126,7 +123,7 @@ void pointTheRest(const AtlasSurface& surface, std::vector<bool>& placed, Corner
   }
 }
 
-// Bits of three coordinates in turn: near in this order is mostly near in space.
+// Interleaves the bits of three coordinates (Morton order).
 std::uint64_t mortonCode(const Vec3& unit) {
   std::uint64_t code = 0;
   for (int bit = 20; bit >= 0; --bit)
@@ -137,8 +134,8 @@ std::uint64_t mortonCode(const Vec3& unit) {
   return code;
 }
 
-// Parts of the surface without any chart: the place of a face that is near in space.
-void pointIslands(const AtlasSurface& surface, const std::vector<bool>& placed, CornerUvs& uvs) {
+// Assigns parts of the surface without any chart the UV of a face that is near in space.
+void assignIslandUvs(const AtlasSurface& surface, const std::vector<bool>& placed, CornerUvs& uvs) {
   if (std::find(placed.begin(), placed.end(), false) == placed.end()) return;
   Box3 box;
   for (const Vec3& p : surface.positions)
@@ -162,14 +159,14 @@ void pointIslands(const AtlasSurface& surface, const std::vector<bool>& placed, 
 }
 
 void copyToTwins(const AtlasSurface& surface, CornerUvs& uvs) {
-  for (const auto& [face, first] : surface.twins) {
+  for (const auto& [face, first] : surface.duplicates) {
     const Triangle &to = surface.triangles[index(face)], &from = surface.triangles[index(first)];
     for (std::size_t k = 0; k < 3; ++k)
       uvs[index(face)][k] = uvs[index(first)][to[k] == from[0] ? 0 : to[k] == from[1] ? 1 : 2];
   }
 }
 
-// Pieces in the image: faces hang together where both corners of a common edge have one place.
+// Counts the pieces in the image. Connected faces have equal UVs at a common edge.
 int piecesOf(const TriangleMesh& mesh) {
   const Adjacency around = adjacency(mesh);
   std::vector<bool> taken(mesh.triangles.size(), false);
@@ -213,8 +210,8 @@ std::string ownLayoutFault(const TriangleMesh& mesh) {
   if (mesh.corner_uvs.size() != mesh.triangles.size())
     return "texture coordinates are missing on some faces";
   bool finite = true, inside = true;
-  double filled = 0, whole = 0, lost = 0; // area of the unit square; of the faces, and of those
-  std::size_t flat = 0;                   // that have none of the square
+  double filled = 0, whole = 0, lost = 0;
+  std::size_t flat = 0; // faces without UV area
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     const auto& uv = mesh.corner_uvs[f];
     for (const Vec2& p : uv) {
@@ -234,9 +231,9 @@ std::string ownLayoutFault(const TriangleMesh& mesh) {
   if (!finite) return "texture coordinates are not finite";
   if (!inside) return "texture coordinates leave the unit square";
   if (filled == 0) return "texture coordinates have no area";
-  if (lost > kMostLost * whole)
+  if (lost > kMaxLost * whole)
     return "texture coordinates have no area on " + std::to_string(flat) + " triangles";
-  if (filled < kLeastFilled) return "texture coordinates fill less than 1 % of the unit square";
+  if (filled < kMinFilled) return "texture coordinates fill less than 1 % of the unit square";
   const std::optional<UvOverlap> overlap = findUvOverlap(mesh.corner_uvs);
   if (!overlap) return "";
   return "texture coordinates overlap, those of triangles " + std::to_string(overlap->a) + " and " +
@@ -244,11 +241,11 @@ std::string ownLayoutFault(const TriangleMesh& mesh) {
 }
 
 TextureLayout textureLayout(const TriangleMesh& mesh, int image_size) {
-  if (!ownLayoutFault(mesh).empty()) return madeAtlas(mesh, image_size);
+  if (!ownLayoutFault(mesh).empty()) return generateAtlas(mesh, image_size);
   return {std::make_shared<CornerUvs>(mesh.corner_uvs), false, piecesOf(mesh)};
 }
 
-TextureLayout madeAtlas(const TriangleMesh& mesh, int image_size) {
+TextureLayout generateAtlas(const TriangleMesh& mesh, int image_size) {
   if (image_size < 16 || image_size > 16384)
     throw std::invalid_argument("an atlas has 16 to 16384 texels a side");
   const AtlasSurface surface = atlasSurface(mesh);
@@ -268,8 +265,8 @@ TextureLayout madeAtlas(const TriangleMesh& mesh, int image_size) {
                               plane(surface.positions[index(surface.triangles[index(f)][k])]) /
                               image_size;
   });
-  pointTheRest(surface, placed, *uvs);
-  pointIslands(surface, placed, *uvs);
+  assignDegenerateUvs(surface, placed, *uvs);
+  assignIslandUvs(surface, placed, *uvs);
   copyToTwins(surface, *uvs);
   return {std::move(uvs), true, static_cast<int>(charts.size())};
 }

@@ -1,4 +1,4 @@
-// The format that a mesh file's name asks for. Internal to reading and writing.
+// Determines the format of a mesh file. Internal to reading and writing.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@ namespace patina {
 
 enum class MeshFileType { obj, ply, stl };
 
-// By the extension, in any case. Throws FileError naming the choices. A stream ("-" or what is
-// below /dev) has none: PLY is written to it.
+// Returns the format by extension, in any case. Throws FileError naming the choices. A stream ("-"
+// or a path below /dev) has no extension: PLY is written to it.
 MeshFileType meshFileType(const std::filesystem::path& path);
-// The same to read `bytes` by: those of a stream say themselves what they are.
+// The same for reading `bytes`; the format of a stream follows from its content.
 MeshFileType meshFileType(const std::filesystem::path& path, std::string_view bytes);
 
 } // namespace patina

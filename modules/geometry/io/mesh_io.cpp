@@ -5,10 +5,10 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_kind.h"
+#include "geometry/io/commented_file.h"
 #include "geometry/io/mesh_file_type.h"
 
 namespace patina {
-
 namespace {
 
 bool isStream(const std::filesystem::path& path) {
@@ -38,8 +38,9 @@ MeshFileType meshFileType(const std::filesystem::path& path) {
 
 TriangleMesh readMesh(const std::filesystem::path& path, std::vector<std::string>* warnings,
                       MeshColors* colors) {
-  (void)meshFileType(path); // a name that says nothing is refused unread
-  const std::string bytes = readFile(path);
+  // Rejects an unknown extension before the file is read.
+  const bool commented = meshFileType(path) == MeshFileType::obj;
+  const std::string bytes = commented ? readCommented(path) : readFile(path);
   if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
     throw FileError(path.string(), 1, "the text is UTF-16; save it as UTF-8");
   switch (meshFileType(path, bytes)) {

@@ -11,9 +11,9 @@
 
 namespace patina {
 
-// By extension (.obj .ply .stl, any case); of a stream ("-", /dev/fd/3) by its content. Coordinates
-// are returned in the file's own unit, as doubles. Throws FileError with the line, or line 0 and
-// the byte in the cause for binary data; a file without a face is an error too.
+// Reads a mesh by extension (.obj .ply .stl, any case), or a stream ("-", /dev/fd/3) by content.
+// Coordinates are returned in the file's own unit, as doubles. Throws FileError with the line, or
+// line 0 and the byte in the cause for binary data; a file without a face is an error too.
 // - Polygons are split into triangles that keep their outline (polygon_split.h).
 // - OBJ: v, v/vt, v//vn, v/vt/vn, negative indices, comments, any line end and lines continued by a
 //   backslash are read; normals, groups and unknown statements are skipped.
@@ -34,8 +34,8 @@ namespace patina {
 TriangleMesh readMesh(const std::filesystem::path& path,
                       std::vector<std::string>* warnings = nullptr, MeshColors* colors = nullptr);
 
-// The same from memory; `name` is used in messages, and materials and pictures are looked for
-// beside it. These are what the fuzzers call.
+// The same from memory. `name` is used in messages, and materials and pictures are searched beside
+// it. The fuzzers call these.
 TriangleMesh parseObj(std::string_view bytes, const std::string& name,
                       std::vector<std::string>* warnings = nullptr, MeshColors* colors = nullptr);
 TriangleMesh parsePly(std::string_view bytes, const std::string& name,
@@ -43,9 +43,9 @@ TriangleMesh parsePly(std::string_view bytes, const std::string& name,
 TriangleMesh parseStl(std::string_view bytes, const std::string& name,
                       std::vector<std::string>* warnings = nullptr);
 
-// By extension; PLY to a stream; PLY and STL binary. Atomic. PLY stores doubles and OBJ the
-// shortest text, so both read back bit for bit; STL stores floats and no texture.
+// Writes by extension, or PLY to a stream; PLY and STL are binary. Atomic. PLY stores doubles and
+// OBJ the shortest text, so both read back bit for bit; STL stores floats and no texture.
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh);
-std::string plyBytes(const TriangleMesh& mesh); // what it writes as PLY
+std::string plyBytes(const TriangleMesh& mesh); // PLY as written by writeMesh()
 
 } // namespace patina

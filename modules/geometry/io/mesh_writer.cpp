@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "geometry/io/mesh_file_type.h"
+#include "geometry/io/mesh_in_unit.h"
 #include "geometry/io/textured_obj.h"
 #include "geometry/mesh/vertex_weld.h"
 
@@ -107,7 +108,7 @@ void writeTexturedObj(const std::filesystem::path& path, const TriangleMesh& mes
       continue;
     }
     appendNumber(out, ' ', next->texture);
-    for (const Vec2& corner : next->at)
+    for (const Vec2& corner : next->coords)
       for (int k = 0; k < 2; ++k) appendNumber(out, ' ', corner[k]);
     out += '\n';
     ++next;
@@ -129,6 +130,12 @@ void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
     writeFileAtomically(path, stlBytes(mesh));
     return;
   }
+}
+
+void writeMeshIn(const std::filesystem::path& path, TriangleMesh mesh, MeshUnit unit) {
+  const double scale = inMetres({}, unit).scale;
+  for (Vec3& position : mesh.positions) position /= scale;
+  writeMesh(path, mesh);
 }
 
 } // namespace patina

@@ -33,14 +33,14 @@ std::optional<double> finiteNumber(std::string_view word) {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
-// Returns the text without what may be a comment.
+// Returns the text up to " #", which may begin a comment.
 std::string withoutComment(const std::string& text) {
   const std::size_t at = text.find(" #");
   return at == text.npos ? text : std::string(trimmed(text.substr(0, at)));
 }
 
-// Returns the text after the options of a map statement, such as `-s 2 2 1 -clamp on`, and notes
-// those that say where the picture lies.
+// Returns the text after the options of a map statement, such as `-s 2 2 1 -clamp on`, and stores
+// the options that place the picture.
 std::string_view withoutMapOptions(std::string_view rest, MeshPicture& mapped) {
   while (rest.starts_with('-')) {
     text::Words words(rest);
@@ -64,7 +64,7 @@ std::string_view withoutMapOptions(std::string_view rest, MeshPicture& mapped) {
   return rest;
 }
 
-// Returns true for two or more colours, or for one that is not grey. Those beneath pictures that
+// Returns true for two or more colours, or for one that is not grey. Colours beneath pictures that
 // are shown do not count.
 bool hasColors(const std::set<const MtlMaterial*>& materials, bool shows_pictures) {
   std::set<std::vector<double>> colors;
@@ -90,7 +90,7 @@ std::vector<std::string> librariesOf(const std::string& written,
   return names;
 }
 
-using Library = std::map<std::string, MtlMaterial>; // by name; of two alike the first
+using Library = std::map<std::string, MtlMaterial>; // key: name; the first of equal names counts
 
 // Returns "'first'" or "'first' and 3 more".
 std::string firstOf(const std::set<std::string>& names) {
@@ -142,7 +142,7 @@ void keepMaterials(const ObjMaterials& materials, const Library& library,
                    MeshColors& colors) {
   colors.faces.assign(triangles, Rgba{});
   if (mapped) colors.picture_of.assign(triangles, -1);
-  std::map<const MtlMaterial*, std::int32_t> known; // its picture
+  std::map<const MtlMaterial*, std::int32_t> known; // index of its picture
   for (std::size_t i = 0; i < materials.uses.size(); ++i) {
     const ObjMaterials::Use& use = materials.uses[i];
     const std::size_t end =
@@ -198,7 +198,7 @@ std::vector<MtlMaterial> parseMtl(std::string_view bytes) {
       std::vector<double> color;
       for (int k = 0; k < 3; ++k)
         if (const auto value = finiteNumber(words.next())) color.push_back(*value);
-      if (color.size() == 1) color.assign(3, color[0]); // a grey
+      if (color.size() == 1) color.assign(3, color[0]); // grey
       if (color.size() == 3) material.color = color;
     } else if (text::equalIgnoringCase(keyword, "d") || text::equalIgnoringCase(keyword, "Tr")) {
       const auto value = finiteNumber(words.next());

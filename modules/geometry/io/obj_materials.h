@@ -17,11 +17,11 @@ struct ObjMaterials {
     std::size_t first_triangle = 0;
     std::string name;
   };
-  std::vector<std::string> libraries; // as written after mtllib
-  std::vector<Use> uses;              // of usemtl; each holds until the next
+  std::vector<std::string> libraries; // names after mtllib
+  std::vector<Use> uses;              // usemtl statements; each holds until the next
 
-  // Adds what stands after mtllib or usemtl, a comment included, since a name may have a '#' in it.
-  // `triangles` is the number of those before it.
+  // Adds the text after mtllib or usemtl, with its comment, since a name may contain a '#'.
+  // `triangles` is the number of triangles before it.
   void addStatement(std::string_view keyword, std::string_view statement, std::size_t triangles);
 };
 
@@ -29,26 +29,26 @@ struct ObjMaterials {
 struct MtlMaterial {
   std::string name;
   std::vector<double> color; // Kd: three finite numbers, or none
-  std::string picture;       // map_Kd: as written, without its options; or empty
-  MeshPicture mapped{};      // what its options -s, -o and -clamp say
+  std::string picture;       // map_Kd without its options; empty if absent
+  MeshPicture mapped{};      // placement by the options -s, -o and -clamp
   bool is_transparent = false;
   std::filesystem::path library{};
 };
 
-// Statements that are unknown or broken are skipped: a material never refuses its mesh.
+// Parses a library. Unknown or broken statements are skipped: a material never rejects its mesh.
 std::vector<MtlMaterial> parseMtl(std::string_view bytes);
 
-// Returns the file that `written` names beside `from`. Backslashes separate folders too; a folder
-// that does not exist is ignored.
+// Returns the file called `written` beside `from`. Backslashes separate folders too; a folder that
+// does not exist is ignored.
 std::filesystem::path besideFile(const std::filesystem::path& from, const std::string& written);
 
-// Returns the line for pictures that a mesh file names and that are not kept.
+// Returns the warning for pictures that a mesh file names and that are not kept.
 std::string picturesLeftOut(const std::set<std::string>& pictures, bool mapped);
 
-// Reads the libraries beside `path`. A picture is looked for beside its library, then beside
-// `path`. One grey Kd for all counts as no colour. The colours and pictures of the mesh's faces go
-// into `colors`; one line goes into `warnings` for each kind of thing that is left out. Where
-// `colors` is null all of them are.
+// Reads the libraries beside `path`. A picture is searched beside its library, then beside `path`.
+// A single grey Kd counts as no colour. The colours and pictures of the mesh's faces go into
+// `colors`, and one line into `warnings` for each kind of thing that is left out. If `colors` is
+// null, all are left out.
 void readMaterials(const ObjMaterials& materials, const std::filesystem::path& path,
                    const TriangleMesh& mesh, MeshColors* colors,
                    std::vector<std::string>* warnings);

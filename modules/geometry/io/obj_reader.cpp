@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/file.h"
+#include "geometry/io/commented_file.h"
 #include "geometry/io/mesh_file_type.h"
 #include "geometry/io/obj_materials.h"
 #include "geometry/io/text_scan.h"
@@ -13,11 +13,11 @@
 namespace patina {
 namespace {
 
-constexpr std::int64_t kMostIndices = std::numeric_limits<std::int32_t>::max();
+constexpr std::int64_t kMaxIndices = std::numeric_limits<std::int32_t>::max();
 
 class ObjParser {
  public:
-  // textured: where that lies which is not null, lines of haptic coordinates are read.
+  // textured: if not null, receives the lines of haptic coordinates.
   ObjParser(std::string_view bytes, const std::string& name, std::vector<std::string>* warnings,
             MeshColors* colors, std::vector<TexturedFace>* textured = nullptr)
       : name_(name), lines_(withoutByteOrderMark(bytes)), colors_(colors), warnings_(warnings),
@@ -67,7 +67,7 @@ class ObjParser {
   }
 
  private:
-  // An index may name a vertex that comes later in the file, so the check waits for the end.
+  // An index may refer to a vertex later in the file, so it is checked at the end.
   struct Highest {
     std::int64_t index = 0;
     std::size_t line = 0;
@@ -81,7 +81,7 @@ class ObjParser {
     const char* what = "";
     std::vector<std::int32_t> ahead{}; // indices beyond what the file had so far
     std::size_t missing = 0;
-    std::size_t first_line = 0; // of the first index that is ahead or missing
+    std::size_t first_line = 0; // line of the first index that is ahead or missing
 
     void countMissing(std::int64_t count) {
       missing += static_cast<std::size_t>(
@@ -118,7 +118,7 @@ class ObjParser {
   void readVertex(text::Words& words) {
     Vec3 p;
     for (int k = 0; k < 3; ++k) p[k] = text::number(words.next(), name_, line_, "a coordinate");
-    // A weight or a colour may follow, after that what some programs write of transparency.
+    // Reads a weight or a colour, then the transparency that some programs add.
     std::array<double, 3> after{};
     std::size_t more = 0;
     for (auto word = words.next(); !word.empty(); word = words.next(), ++more) {
@@ -126,7 +126,7 @@ class ObjParser {
       if (more < after.size()) after[more] = value;
     }
     if (more >= 3) addVertexColor(after);
-    if (static_cast<std::int64_t>(mesh_.positions.size()) == kMostIndices)
+    if (static_cast<std::int64_t>(mesh_.positions.size()) == kMaxIndices)
       fail("more vertices than this program can count");
     mesh_.positions.push_back(p);
   }
@@ -143,7 +143,7 @@ class ObjParser {
     Vec2 uv(text::number(words.next(), name_, line_, "a texture coordinate"), 0);
     const std::string_view second = words.next();
     if (!second.empty()) uv[1] = text::number(second, name_, line_, "a texture coordinate");
-    if (static_cast<std::int64_t>(texture_.size()) == kMostIndices)
+    if (static_cast<std::int64_t>(texture_.size()) == kMaxIndices)
       fail("more texture points than this program can count");
     texture_.push_back(uv);
   }
@@ -173,14 +173,14 @@ class ObjParser {
     if (id.empty() || error != std::errc() || stop != id.data() + id.size() || face.texture < -1)
       fail(text::quoted(id) + " is not a texture's number (0 or more; -1: none)");
     std::string_view word = words.next();
-    const bool told = face.texture >= 0 || !word.empty();
-    for (Vec2& corner : face.at)
-      for (int k = 0; told && k < 2; ++k, word = words.next()) {
+    const bool given = face.texture >= 0 || !word.empty();
+    for (Vec2& corner : face.coords)
+      for (int k = 0; given && k < 2; ++k, word = words.next()) {
         corner[k] = text::number(word, name_, line_, "a haptic coordinate");
         if (!std::isfinite(corner[k])) fail("a haptic coordinate is not finite");
       }
     if (!word.empty()) fail("more than three pairs of haptic coordinates");
-    if (haptic_lines_ == kMostIndices) fail("more faces than this program can count");
+    if (haptic_lines_ == kMaxIndices) fail("more faces than this program can count");
     face.face = static_cast<std::int32_t>(haptic_lines_++);
     if (face.texture >= 0) textured_->push_back(face);
   }
@@ -194,7 +194,7 @@ class ObjParser {
            std::to_string(mesh_.triangles.size()) + " faces; each face must have a line");
   }
 
-  // "v", "v/t", "v//n" or "v/t/n".
+  // Parses "v", "v/t", "v//n" or "v/t/n".
   Corner readCorner(std::string_view word) {
     Corner corner;
     const char* at = word.data();
@@ -219,7 +219,7 @@ class ObjParser {
     std::int64_t index = 0;
     const auto [stop, error] = text::wholeNumber(at, end, index);
     if (error == std::errc::invalid_argument) throwBadCorner(word);
-    if (error != std::errc() || index > kMostIndices || index < -kMostIndices)
+    if (error != std::errc() || index > kMaxIndices || index < -kMaxIndices)
       fail("the face names vertex " + text::quoted(word) + ", more than a file can hold");
     at = stop;
     if (index == 0) fail("the face names vertex 0; OBJ counts from 1");
@@ -233,7 +233,7 @@ class ObjParser {
     return static_cast<std::int32_t>(index - 1);
   }
 
-  // Returns kNone for an index that no file has.
+  // Returns kNone for an index that is invalid in any file.
   std::int32_t readReference(const char*& at, const char* end, std::string_view word,
                              std::int64_t so_far, References& references) {
     std::int64_t index = 0;
@@ -243,7 +243,7 @@ class ObjParser {
     if (index < 0) index += so_far + 1;
     if (index > 0 && index <= so_far) return static_cast<std::int32_t>(index - 1);
     if (references.first_line == 0) references.first_line = line_;
-    if (error != std::errc() || index <= 0 || index > kMostIndices) {
+    if (error != std::errc() || index <= 0 || index > kMaxIndices) {
       ++references.missing;
       return kNone;
     }
@@ -282,9 +282,9 @@ class ObjParser {
 
   const std::string& name_;
   text::Lines lines_;
-  std::size_t line_ = 0; // where the current statement begins
+  std::size_t line_ = 0; // first line of the current statement
   std::string joined_;
-  std::string_view whole_; // the statement with its comment: a material's name may have a '#'
+  std::string_view whole_; // statement with its comment: a material's name may contain '#'
   TriangleMesh mesh_;
   std::vector<Vec2> texture_;
   std::vector<std::array<std::int32_t, 3>> corner_textures_;
@@ -299,7 +299,7 @@ class ObjParser {
   std::vector<std::string>* warnings_;
   std::vector<TexturedFace>* textured_;
   std::int64_t haptic_lines_ = 0;
-  std::size_t polygon_line_ = 0; // of the first face with more than three corners
+  std::size_t polygon_line_ = 0; // line of the first face with more than three corners
   Highest highest_vertex_;
   References texture_points_{"texture point that is not there: the texture is left out"};
   References normals_{"normal that is not there: normals are not used"};
@@ -321,7 +321,7 @@ TexturedMesh parseTexturedObj(std::string_view bytes, const std::string& name, M
 TexturedMesh readTexturedObj(const std::filesystem::path& path, MeshColors* colors) {
   if (meshFileType(path) != MeshFileType::obj)
     throw FileError(path.string(), 0, "only an .obj holds haptic coordinates");
-  return parseTexturedObj(readFile(path), path.string(), colors);
+  return parseTexturedObj(readCommented(path), path.string(), colors);
 }
 
 } // namespace patina

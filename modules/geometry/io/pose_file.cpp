@@ -15,11 +15,11 @@ namespace patina {
 namespace {
 
 struct PoseFault {
-  int row; // the first is 0
+  int row; // zero-based
   std::string cause;
 };
 
-// Why these numbers are no rigid motion.
+// Returns why these numbers are not a rigid motion.
 std::optional<PoseFault> faultOf(const Eigen::Matrix4d& pose, double rigid = kRigid) {
   for (int row = 0; row < 4; ++row)
     if (!pose.row(row).allFinite()) return PoseFault{row, "not finite"};

@@ -1,4 +1,4 @@
-// A pose in files: 4 x 4 numbers, as a person writes them or as rows in JSON.
+// Reads and writes poses: 4 x 4 numbers as text or as rows in JSON.
 #pragma once
 
 #include <filesystem>
@@ -9,20 +9,20 @@
 
 namespace patina {
 
-// Row by row, '#' starts a comment. Throws FileError naming the line: a word that is no finite
-// number, too few or too many, a last row other than 0 0 0 1, not a rotation.
+// Reads row by row; '#' starts a comment. Throws FileError naming the line for a word that is not a
+// finite number, a wrong count, a last row other than 0 0 0 1, or a matrix that is not a rotation.
 Pose readPose(const std::filesystem::path& path);
 Pose parsePose(const std::string& text, const std::string& name);
-// The same to be written; `frames` is the comment, "mesh_from_scan".
+// Returns the text to write; `frames` becomes its comment, such as "mesh_from_scan".
 std::string poseText(const Pose& pose, const std::string& frames);
 
-Json poseJson(const Pose& pose); // its rows
-// The rows that an object has under this key. Throws Error naming the key and the row, for all that
-// parsePose() refuses; `rigid`: how far lengths may be from 1.
+Json poseJson(const Pose& pose); // four rows
+// Returns the pose under a key of an object. Throws Error naming the key and the row, for the same
+// faults as parsePose(); `rigid`: tolerance of lengths around 1.
 constexpr double kRigid = 1e-6;
 Pose poseIn(const Json& object, const std::string& key, double rigid = kRigid);
-// The same of a file: "mesh_from_scan" of a registration, "mesh_from_camera" of a truth. Throws
-// FileError.
+// The same from a file: "mesh_from_scan" of a registration, "mesh_from_camera" of a ground truth.
+// Throws FileError.
 Pose readPoseAt(const std::filesystem::path& path, const std::string& key);
 
 } // namespace patina

@@ -7,10 +7,10 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kHeader = 84;       // 80 bytes of anything, then the count
-constexpr unsigned char kOwnColor = 0x80; // in an attribute's second byte: a colour (VisCAM)
-constexpr std::size_t kRecord = 50;       // normal, three corners (floats), two bytes of anything
-constexpr std::uint32_t kUnknownCount = 0xffffffff; // of programs that write without seeking
+constexpr std::size_t kHeader = 84;       // 80 free bytes, then the count
+constexpr unsigned char kOwnColor = 0x80; // VisCAM: a facet has its own colour
+constexpr std::size_t kRecord = 50;       // normal, three corners (floats), two free bytes
+constexpr std::uint32_t kUnknownCount = 0xffffffff; // written by programs that cannot seek
 
 template <typename T> T littleEndian(const char* at) {
   static_assert(sizeof(T) == 4);
@@ -27,7 +27,7 @@ std::uint64_t binarySize(std::string_view bytes) {
 
 enum class Kind { binary, ascii, other_text };
 
-// A binary header may begin with "solid" too, so the size decides first, then the look of the text.
+// Determines the kind by size, then by content, since a binary header may begin with "solid" too.
 Kind kindOf(std::string_view bytes) {
   if (bytes.size() >= kHeader && binarySize(bytes) == bytes.size()) return Kind::binary;
   if (text::hasControl(bytes.substr(0, kHeader))) return Kind::binary;
@@ -68,7 +68,7 @@ TriangleMesh parseBinary(std::string_view bytes, const std::string& name,
                        (left < kRecord ? std::string()
                                        : ", though they could be " + formatCount(left / kRecord) +
                                              " triangles more than the header says"));
-  bool colored = bytes.substr(0, 80).find("COLOR=") != bytes.npos; // Magics
+  bool colored = bytes.substr(0, 80).find("COLOR=") != bytes.npos; // written by Magics
   TriangleMesh mesh;
   mesh.triangles.resize(count);
   VertexWeld weld(count / 2 + 3);
@@ -119,7 +119,7 @@ class AsciiParser {
       words_ = text::Words(line_);
     }
   }
-  // The rest of the line is a name, unless all of the file is one line: then it ends at `next`.
+  // Skips the solid's name: the rest of the line, or up to `next` if the whole file is one line.
   void skipName(std::string_view next) {
     const auto from = static_cast<std::size_t>(word_.data() + word_.size() - line_.data());
     const bool goes_on = line_.find("facet normal", from) != line_.npos;
@@ -133,29 +133,29 @@ class AsciiParser {
                         std::string("the file ends where ") + wanted + " should be");
     } while (skipsColor());
   }
-  bool skipsColor() { // of Magics: a line of its own
+  bool skipsColor() { // a separate line, by Magics
     const bool skips = (word_[0] | 0x20) == 'c' && text::equalIgnoringCase(word_, "color");
     if (skips) words_ = text::Words({});
     colored_ = colored_ || skips;
     return skips;
   }
   void expect(const char* wanted) {
-    if (!text::equalIgnoringCase(word_, wanted)) throwUnexpected(wanted);
+    if (word_ != wanted && !text::equalIgnoringCase(word_, wanted)) throwUnexpected(wanted);
   }
   void nextMustBe(const char* wanted) {
     nextWord(wanted);
     expect(wanted);
   }
-  // "endloop", or "end loop" as some programs write it.
+  // Accepts "endloop", or "end loop" as some programs write it.
   void expectEnd(const char* wanted, const char* what) {
-    if (!text::equalIgnoringCase(word_, "end")) return expect(wanted);
+    if (word_.size() != 3 || !text::equalIgnoringCase(word_, "end")) return expect(wanted);
     nextWord(what);
     expect(what);
   }
-  // Else the solid has ended.
+  // Returns false at the end of the solid.
   bool nextIsFacet() {
     while (findWord()) {
-      if (text::equalIgnoringCase(word_, "facet")) return true;
+      if (word_ == "facet" || text::equalIgnoringCase(word_, "facet")) return true;
       if (skipsColor()) continue;
       expectEnd("endsolid", "solid");
       return false;
@@ -194,7 +194,7 @@ class AsciiParser {
   const std::string& name_;
   text::Lines lines_;
   std::string_view line_;
-  text::Words words_{{}}; // those of the line that are left
+  text::Words words_{{}}; // remaining words of the line
   std::string_view word_;
   bool colored_ = false;
   VertexWeld weld_;

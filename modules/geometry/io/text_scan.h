@@ -27,7 +27,7 @@ inline bool hasControl(std::string_view s) {
 
 bool equalIgnoringCase(std::string_view a, std::string_view b);
 
-// Fit for one line of a message, whatever the bytes are.
+// Makes a word printable in a message.
 inline std::string shown(std::string_view word) {
   std::string out;
   for (const char c : word)
@@ -40,7 +40,7 @@ inline std::string quoted(std::string_view word, std::size_t most = 32) {
 
 // Returns the cause for a file that has vertices but no face.
 std::string pointCloud(std::size_t points, const char* why);
-// Returns the warning for the colours of "vertices", "faces" or others that `whose` names.
+// Returns the warning for colours of "vertices", "faces" or others named by `whose`.
 inline std::string colorsLeftOut(const std::string& whose) {
   return "the colours of its " + whose + " are left out";
 }
@@ -51,7 +51,7 @@ inline char lineEndOf(std::string_view bytes) {
   return bytes.find('\n') == bytes.npos && bytes.find('\r') != bytes.npos ? '\r' : '\n';
 }
 
-// Physical lines, without their ends.
+// Iterates over the physical lines, without their ends.
 class Lines {
  public:
   explicit Lines(std::string_view bytes) : Lines(bytes, lineEndOf(bytes)) {}
@@ -67,7 +67,7 @@ class Lines {
     ++number_;
     return true;
   }
-  std::size_t number() const { return number_; } // of the line last returned
+  std::size_t number() const { return number_; } // number of the line last returned
   std::string_view rest() const { return rest_; }
 
  private:
@@ -76,7 +76,7 @@ class Lines {
   std::size_t number_ = 0;
 };
 
-// Words between blanks within one line; an empty word is the end.
+// Iterates over the words between blanks of one line; an empty word marks the end.
 class Words {
  public:
   explicit Words(std::string_view line) : at_(line.data()), end_(line.data() + line.size()) {}
@@ -92,15 +92,15 @@ class Words {
   const char* end_;
 };
 
-// As std::from_chars does, in half of its time.
+// Parses as std::from_chars does, in half the time.
 inline std::from_chars_result wholeNumber(const char* at, const char* end, std::int64_t& value) {
-  constexpr std::ptrdiff_t kMostDigits = 17; // that fit in any case
+  constexpr std::ptrdiff_t kMaxDigits = 17; // Numbers with so many digits always fit.
   const char* const first = at + (at != end && *at == '-');
   const char* digit = first;
   std::int64_t sum = 0;
-  for (; digit != end && *digit >= '0' && *digit <= '9' && digit - first < kMostDigits; ++digit)
+  for (; digit != end && *digit >= '0' && *digit <= '9' && digit - first < kMaxDigits; ++digit)
     sum = 10 * sum + (*digit - '0');
-  if (digit == first || digit - first == kMostDigits) return std::from_chars(at, end, value);
+  if (digit == first || digit - first == kMaxDigits) return std::from_chars(at, end, value);
   value = first == at ? sum : -sum;
   return {digit, std::errc()};
 }
@@ -108,7 +108,7 @@ inline std::from_chars_result wholeNumber(const char* at, const char* end, std::
 [[noreturn]] void throwNotANumber(std::string_view word, const std::string& name, std::size_t line,
                                   const char* what);
 
-// `what` names the thing that should stand there ("a coordinate").
+// Parses a number; `what` names it in the error ("a coordinate").
 inline double number(std::string_view word, const std::string& name, std::size_t line,
                      const char* what) {
   if (const auto value = parseNumber(word)) return *value;

@@ -21,7 +21,7 @@ void fillVertexFaces(const TriangleMesh& mesh, Adjacency& result) {
   const auto forEach = [&](auto visit) {
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
       const Triangle& t = mesh.triangles[f];
-      for (std::size_t k = 0; k < 3; ++k) // a repeated vertex names its face once
+      for (std::size_t k = 0; k < 3; ++k) // counts a repeated vertex once
         if (std::find(t.begin(), t.begin() + k, t[k]) == t.begin() + k)
           visit(index(t[k]), static_cast<std::int32_t>(f));
     }
@@ -33,14 +33,13 @@ void fillVertexFaces(const TriangleMesh& mesh, Adjacency& result) {
   forEach([&](std::size_t v, std::int32_t f) { result.vertex_faces[index(next[v]++)] = f; });
 }
 
-// The half-edge structure of the part of a mesh that is an oriented manifold. Faces that it cannot
-// hold (a third face at an edge, two that run the same way, surfaces that meet in a vertex only)
-// are left over for the edge table.
+// Half-edges of the oriented manifold part of a mesh. Other faces (a third one at an edge, two with
+// the same edge direction, surfaces that meet in one vertex) are left over for the edge table.
 class HalfEdges {
  public:
   HalfEdges(const TriangleMesh& mesh, const Adjacency& adjacency)
       : handles_(mesh.triangles.size()) {
-    omerr().disable(); // a refused face is expected here, and is not news for the user
+    omerr().disable(); // Rejected faces are expected and not reported.
     structure_.reserve(mesh.positions.size(), mesh.triangles.size() * 3 / 2, mesh.triangles.size());
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) structure_.new_vertex();
     for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -73,22 +72,22 @@ class HalfEdges {
   const std::vector<std::int32_t>& leftOver() const { return left_over_; }
 
  private:
-  // Adding a face walks round its vertices: at the hub of a great fan that would be quadratic.
+  // Adding a face walks round its vertices, which is quadratic at the hub of a large fan.
   static bool isHub(const Adjacency& adjacency, const Triangle& t) {
-    constexpr std::int32_t kMostFaces = 256;
+    constexpr std::int32_t kMaxFaces = 256;
     return std::any_of(t.begin(), t.end(), [&](std::int32_t v) {
       return adjacency.vertex_offsets[index(v) + 1] - adjacency.vertex_offsets[index(v)] >
-             kMostFaces;
+             kMaxFaces;
     });
   }
 
   OpenMesh::TriConnectivity structure_;
-  std::vector<OpenMesh::FaceHandle> handles_; // of each triangle; invalid if left over
-  std::vector<std::int32_t> face_of_;         // the triangle of each handle
+  std::vector<OpenMesh::FaceHandle> handles_; // handle of each triangle; invalid if left over
+  std::vector<std::int32_t> face_of_;         // triangle of each handle
   std::vector<std::int32_t> left_over_;
 };
 
-// All uses of the edges that a left-over face has: whatever the half-edges say there lacks it.
+// Finds all uses of the edges of left-over faces, which the half-edges do not contain.
 void resolveLeftOver(const TriangleMesh& mesh, const std::vector<std::int32_t>& left_over,
                      Adjacency& result) {
   std::vector<bool> touched(mesh.positions.size(), false);

@@ -1,4 +1,4 @@
-// Neighbourhood of faces and vertices (half-edge structure inside; OpenMesh in the .cpp only).
+// Neighbours of faces and vertices (OpenMesh half-edges inside the .cpp).
 #pragma once
 
 #include <array>
@@ -10,11 +10,10 @@
 namespace patina {
 
 struct Adjacency {
-  // Across edge k of a face (from corner k to corner k+1): the other face, or -1 at a boundary or
-  // where the edge is non-manifold.
+  // Face across edge k (from corner k to corner k + 1), or -1 at a boundary or non-manifold edge.
   std::vector<std::array<std::int32_t, 3>> face_neighbours;
-  // Faces round each vertex, as offsets into one array: vertex v has faces
-  // [vertex_offsets[v], vertex_offsets[v+1]) of vertex_faces.
+  // Faces round each vertex: vertex v has faces [vertex_offsets[v], vertex_offsets[v + 1]) of
+  // vertex_faces.
   std::vector<std::int32_t> vertex_offsets;
   std::vector<std::int32_t> vertex_faces;
 };

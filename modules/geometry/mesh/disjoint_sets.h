@@ -1,4 +1,4 @@
-// Disjoint sets of numbers, each named by its lowest member (Galler and Fischer, 1964). Internal to
+// Disjoint sets of numbers, each named by its lowest member (Galler & Fischer 1964). Internal to
 // geometry.
 #pragma once
 
@@ -15,7 +15,7 @@ class DisjointSets {
  public:
   explicit DisjointSets(std::size_t size) : up_(size) { std::iota(up_.begin(), up_.end(), 0); }
 
-  // The lowest member of the set that holds v. It shortens the way for who asks next.
+  // Returns the lowest member of the set of v. Halves the path for later calls.
   std::int32_t find(std::int32_t v) {
     while (up_[index(v)] != v) v = up_[index(v)] = up_[index(up_[index(v)])];
     return v;
@@ -25,9 +25,9 @@ class DisjointSets {
     up_[index(std::max(a, b))] = std::min(a, b);
   }
 
-  // The result holds for each number what find() says of it.
+  // Returns find() of each number.
   std::vector<std::int32_t> lowest() && {
-    for (std::int32_t& v : up_) v = up_[index(v)]; // ascending, so that what is above v is done
+    for (std::int32_t& v : up_) v = up_[index(v)]; // ascending, so that entries above v are final
     return std::move(up_);
   }
 

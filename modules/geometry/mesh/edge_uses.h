@@ -1,5 +1,4 @@
-// Which faces use which edges, vertices at equal positions being one. Internal to open_parts and
-// front_side.
+// Lists the faces at each edge, with vertices at equal positions merged. Internal to geometry.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 
 namespace patina {
 
-// Of the same triangles; points in the order in which they first come.
+// Returns the same triangles over merged points, which keep the order of their first use.
 inline TriangleMesh weldedMesh(const TriangleMesh& mesh) {
   VertexWeld weld(mesh.positions.size());
   std::vector<std::int32_t> vertex;
@@ -27,8 +26,8 @@ inline std::vector<Triangle> weldedTriangles(const TriangleMesh& mesh) {
   return weldedMesh(mesh).triangles;
 }
 
-// By face: the lowest face with the same three vertices, itself where there is no other.
-inline std::vector<std::int32_t> firstTwins(const std::vector<Triangle>& triangles) {
+// Returns for each face the lowest face with the same three vertices, which may be itself.
+inline std::vector<std::int32_t> firstDuplicates(const std::vector<Triangle>& triangles) {
   struct Named {
     Triangle vertices;
     std::int32_t face;
@@ -56,7 +55,7 @@ struct EdgeUse {
   auto operator<=>(const EdgeUse&) const = default;
 };
 
-// visit(first, last) for the uses of each edge. Faces with a twin before them do not count.
+// Calls visit(first, last) for the uses of each edge. Duplicates of an earlier face do not count.
 template <class Uses, class Visit>
 void forEachEdge(const std::vector<Triangle>& triangles, const std::vector<std::int32_t>& twin,
                  const Uses& counts, const Visit& visit) {

@@ -1,4 +1,4 @@
-// The ship of shapes.h: smooth sheets with hard joins, none of them closed.
+// The ship of shapes.h: smooth open sheets with hard joins.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -11,7 +11,7 @@ namespace {
 
 using Patch = std::function<Vec3(double u, double v)>; // u, v in [0, 1]
 
-// A grid of vertices over a patch, its normal along d/du x d/dv; returns the first vertex's index.
+// Adds a grid of vertices over a patch with normal d/du x d/dv; returns the first vertex's index.
 std::int32_t addPatch(TriangleMesh& mesh, const Patch& patch, int nu, int nv) {
   const auto first = static_cast<std::int32_t>(mesh.positions.size());
   for (int j = 0; j <= nv; ++j)
@@ -26,7 +26,7 @@ std::int32_t addPatch(TriangleMesh& mesh, const Patch& patch, int nu, int nv) {
   return first;
 }
 
-// An open tube with its own closing column of vertices shared.
+// Adds an open tube whose last column of vertices is its first.
 void addTube(TriangleMesh& mesh, const Vec3& foot, const Vec3& top, double radius, int around,
              int along) {
   const Vec3 axis = (top - foot).normalized();
@@ -116,7 +116,7 @@ void addKeel(TriangleMesh& mesh) {
 void addMast(TriangleMesh& mesh, double x, double height) {
   const Vec3 foot(x, 0, 0.065);
   addTube(mesh, foot, foot + height * Vec3::UnitZ(), 0.008, 8, 16);
-  constexpr std::array<double, 4> kLevels = {0.14, 0.45, 0.72, 0.93}; // of the mast's height
+  constexpr std::array<double, 4> kLevels = {0.14, 0.45, 0.72, 0.93}; // mast heights
   for (std::size_t s = 0; s + 1 < kLevels.size(); ++s) {
     const double bottom = foot.z() + kLevels[s] * height;
     const double top = foot.z() + (kLevels[s + 1] - 0.02) * height;

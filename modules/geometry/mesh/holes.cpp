@@ -1,16 +1,160 @@
 #include "geometry/mesh/holes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
+#include <tbb/parallel_for.h>
+
 #include "core/numbers.h"
+#include "geometry/mesh/disjoint_sets.h"
+#include "geometry/mesh/edge_uses.h"
+#include "geometry/mesh/point_grid.h"
 
 namespace patina {
 namespace {
 
-constexpr std::size_t kMostVertices = 64; // the triangulation takes the cube of their number
-constexpr double kFlatHole = 1e-4;        // distance from a plane, of the root of the area
+constexpr double kNear = 0.7; // fraction of the reach
+// Largest distance between the ends of two matching boundary edges: fractions of the shorter edge
+// and, at least, of the reach.
+constexpr double kSeam = 0.4, kMinSeam = 0.25;
+constexpr std::size_t kSmallPiece = 4;                    // faces
+constexpr double kJoinedRim = 0.5, kJoinedSmallRim = 0.3; // fractions of a boundary's length
+
+// Marks boundary edges that match those of other pieces, joins such pieces and returns their former
+// roots.
+std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
+                                        const std::vector<std::size_t>& faces_of, double reach,
+                                        std::vector<RimEdge>& rims, DisjointSets& pieces) {
+  std::vector<Vec3> middles;
+  middles.reserve(rims.size());
+  for (const RimEdge& rim : rims)
+    middles.push_back(0.5 *
+                      (positions[index(rim.vertices[0])] + positions[index(rim.vertices[1])]));
+  const double far = kNear * reach;
+  const PointGrid grid(middles, far);
+  struct Place {
+    std::array<std::int32_t, 2> vertices;
+    std::int32_t root;          // root of its piece
+    std::int32_t covering = -1; // matching edge of another piece
+    double length;
+    bool joined = false;
+  };
+  const auto squareOf = [&](std::int32_t v, std::int32_t w) {
+    return (positions[index(v)] - positions[index(w)]).squaredNorm();
+  };
+  std::vector<Place> places(rims.size()); // in the grid's order
+  std::vector<double> whole(faces_of.size()), shared(faces_of.size());
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const RimEdge& rim = rims[grid.point(n)];
+    Place& at = places[n];
+    at.vertices = rim.vertices;
+    at.length = std::sqrt(squareOf(at.vertices[0], at.vertices[1]));
+    at.root = pieces.find(rim.face);
+    whole[index(at.root)] += at.length;
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.size(), 4096), [&](const auto& part) {
+    for (std::size_t n = part.begin(); n < part.end(); ++n) {
+      Place& at = places[n];
+      grid.forEachNear(n, far, [&](std::size_t m) {
+        const Place& other = places[m];
+        if (other.root == at.root) return false;
+        at.joined = true;
+        const double limit =
+            std::clamp(kSeam * std::min(at.length, other.length), kMinSeam * reach, far);
+        if (squareOf(at.vertices[0], other.vertices[1]) > limit * limit ||
+            squareOf(at.vertices[1], other.vertices[0]) > limit * limit)
+          return false;
+        at.covering = static_cast<std::int32_t>(m);
+        return true;
+      });
+    }
+  });
+  for (const Place& at : places)
+    if (at.joined) shared[index(at.root)] += at.length;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    Place& at = places[n];
+    const std::size_t piece = index(at.root);
+    const double share = faces_of[piece] < kSmallPiece ? kJoinedSmallRim : kJoinedRim;
+    at.joined &= shared[piece] >= share * whole[piece];
+    RimEdge& rim = rims[grid.point(n)];
+    rim.joined = at.joined;
+    rim.covered = at.joined && at.covering >= 0;
+  }
+  // Joins the piece to that of the matching edge, or else to all pieces nearby.
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const Place& at = places[n];
+    if (!at.joined) continue;
+    if (at.covering >= 0 && places[index(at.covering)].joined)
+      pieces.join(at.root, places[index(at.covering)].root);
+    else
+      grid.forEachNear(n, far, [&](std::size_t m) {
+        const bool asks_too = m > n && places[m].covering < 0;
+        if (places[m].joined && !asks_too) pieces.join(at.root, places[m].root);
+        return false;
+      });
+  }
+  std::vector<std::int32_t> joined;
+  for (const Place& at : places)
+    if (pieces.find(at.root) != at.root) joined.push_back(at.root);
+  return joined;
+}
+
+} // namespace
+
+ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
+  const std::vector<Triangle>& triangles = mesh.triangles;
+  const std::vector<std::int32_t> first_of = firstDuplicates(triangles);
+  ConnectedParts found;
+  DisjointSets pieces(triangles.size());
+  std::vector<std::int32_t> crossed;
+  const auto rises = [&](const EdgeUse& use) {
+    return triangles[index(use.face)][static_cast<std::size_t>(use.edge)] == use.low;
+  };
+  const auto runOf = [&](const EdgeUse& use) {
+    return rises(use) ? std::array{use.low, use.high} : std::array{use.high, use.low};
+  };
+  forEachEdge(
+      triangles, first_of, [](std::size_t) { return true; },
+      [&](auto first, auto last) {
+        if (last - first == 1) found.rims.push_back({runOf(*first), first->face, first->edge});
+        if (last - first == 2 && rises(first[0]) == rises(first[1])) crossed.push_back(first->face);
+        for (auto use = first + 1; use != last; ++use) pieces.join(first->face, use->face);
+      });
+  std::vector<std::int32_t> joined;
+  std::vector<std::size_t> faces_of(triangles.size()); // count per root
+  for (std::size_t f = 0; f < triangles.size(); ++f) ++faces_of[index(pieces.find(first_of[f]))];
+  if (reach > 0 && !triangles.empty() && faces_of[0] < triangles.size())
+    joined = joinAlongRims(mesh.positions, faces_of, reach, found.rims, pieces);
+
+  found.part_of.resize(triangles.size());
+  std::vector<std::uint8_t> doubled; // part has duplicate faces
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    const std::size_t lowest = index(pieces.find(first_of[f]));
+    if (lowest == f) {
+      found.part_of[f] = static_cast<std::int32_t>(found.parts.size());
+      found.parts.emplace_back();
+      doubled.push_back(0);
+    }
+    const std::int32_t part = found.part_of[f] = found.part_of[lowest];
+    found.parts[index(part)].faces.push_back(static_cast<std::int32_t>(f));
+    doubled[index(part)] |= index(first_of[f]) != f;
+  }
+  const auto partOf = [&](std::int32_t face) -> ConnectedPart& {
+    return found.parts[index(found.part_of[index(face)])];
+  };
+  for (const RimEdge& rim : found.rims) ++partOf(rim.face).rim_edges;
+  for (const std::int32_t f : joined) partOf(f).joined = true;
+  // The orientation of duplicate faces is ambiguous.
+  for (const std::int32_t f : crossed) partOf(f).twisted = !doubled[index(found.part_of[index(f)])];
+  return found;
+}
+
+namespace {
+
+constexpr std::size_t kMaxVertices = 64; // The triangulation is cubic in this.
+constexpr double kFlatHole = 1e-4;       // distance from a plane over the root of the area
 
 Vec3 meanOf(const std::vector<Vec3>& loop) {
   Vec3 sum = Vec3::Zero();
@@ -19,14 +163,14 @@ Vec3 meanOf(const std::vector<Vec3>& loop) {
 }
 
 std::vector<Vec3> thinned(const std::vector<Vec3>& loop) {
-  if (loop.size() <= kMostVertices) return loop;
+  if (loop.size() <= kMaxVertices) return loop;
   std::vector<Vec3> some;
-  for (std::size_t i = 0; i < kMostVertices; ++i)
-    some.push_back(loop[i * loop.size() / kMostVertices]);
+  for (std::size_t i = 0; i < kMaxVertices; ++i)
+    some.push_back(loop[i * loop.size() / kMaxVertices]);
   return some;
 }
 
-// least(i, j): least area between the chord from i to j and the loop's vertices between them.
+// least(i, j) is the least area between the chord from i to j and the loop's vertices between them.
 class LeastTriangulation {
  public:
   explicit LeastTriangulation(const std::vector<Vec3>& loop)
@@ -71,7 +215,7 @@ class LeastTriangulation {
   std::vector<std::size_t> apex_;
 };
 
-// Walks along unused edges; where the walk meets itself, the loop that it has closed is cut off.
+// Walks along unused edges. If the walk meets itself, it cuts off the loop that it has closed.
 class Loops {
  public:
   Loops(std::size_t points, const std::vector<std::array<std::int32_t, 2>>& edges)
@@ -93,7 +237,7 @@ class Loops {
     place_[from] = 0;
     while (!way.empty()) {
       const std::size_t next = step(way.back());
-      if (next == kNowhere) { // a dead end
+      if (next == kNowhere) { // dead end
         place_[way.back()] = kNowhere;
         way.pop_back();
       } else if (place_[next] == kNowhere) {
@@ -120,9 +264,9 @@ class Loops {
   }
 
   const std::vector<std::array<std::int32_t, 2>>& edges_;
-  std::vector<std::vector<std::size_t>> of_point_; // edges
+  std::vector<std::vector<std::size_t>> of_point_; // edges at each point
   std::vector<bool> used_;
-  std::vector<std::size_t> place_; // by point: on the way
+  std::vector<std::size_t> place_; // index of each point in the walk
 };
 
 } // namespace
@@ -138,7 +282,7 @@ Hole spanned(const std::vector<Vec3>& loop) {
   const Vec3 normal = across.normalized();
   double off = 0;
   for (const Vec3& p : loop) off = std::max(off, std::abs(normal.dot(p - mean)));
-  Vec3 moment = Vec3::Zero(); // about the mean
+  Vec3 moment = Vec3::Zero(); // relative to the mean
   if (off <= kFlatHole * std::sqrt(across.norm())) {
     hole.area = across.norm();
     for (std::size_t i = 0; i < loop.size(); ++i)
@@ -159,8 +303,7 @@ std::string describeHole(const Hole& hole) {
 }
 
 std::vector<Hole> holesOf(const std::vector<Vec3>& points,
-                          const std::vector<std::array<std::int32_t, 2>>& edges,
-                          double least_area) {
+                          const std::vector<std::array<std::int32_t, 2>>& edges, double min_area) {
   std::vector<Hole> holes;
   std::vector<Vec3> loop;
   Loops(points.size(), edges).run([&](const std::vector<std::size_t>& way) {
@@ -172,10 +315,10 @@ std::vector<Hole> holesOf(const std::vector<Vec3>& points,
       loop.push_back(points[p]);
     }
     round += (loop.front() - loop.back()).norm();
-    // No loop spans more than the circle of its length (isoperimetric inequality).
-    if (round * round < 4 * std::numbers::pi * least_area) return;
+    // A loop of this length encloses at most the area of a circle (isoperimetric inequality).
+    if (round * round < 4 * std::numbers::pi * min_area) return;
     const Hole hole = spanned(loop);
-    if (hole.area >= least_area) holes.push_back(hole);
+    if (hole.area >= min_area) holes.push_back(hole);
   });
   std::stable_sort(holes.begin(), holes.end(),
                    [](const Hole& a, const Hole& b) { return a.area > b.area; });

@@ -1,16 +1,166 @@
 #include "geometry/mesh/mesh_report.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <numeric>
+#include <vector>
 
 #include "core/error.h"
-#include "geometry/mesh/border_weld.h"
+#include "core/types.h"
 #include "geometry/mesh/disjoint_sets.h"
+#include "geometry/mesh/point_grid.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 namespace {
 
-// A triangle is closed_up if the weld made two of its corners one.
+// Closes the cracks of a mesh for its report: corners at equal or nearly equal positions, and
+// corners on an edge.
+
+// Edge with one face, in the direction of that face.
+struct BoundaryEdge {
+  std::int32_t from = 0;
+  std::int32_t to = 0;
+};
+
+struct BorderWeld {
+  std::vector<std::int32_t> vertex_of; // target of each vertex; empty if none is welded
+  double widest_crack = 0;             // greatest distance between two welded corners
+};
+
+struct SplitBorder {
+  std::vector<BoundaryEdge> edges;
+  double widest_crack = 0; // largest distance of a corner from the edge that it splits
+};
+
+std::vector<std::int32_t> verticesOf(const std::vector<BoundaryEdge>& border) {
+  std::vector<std::int32_t> vertices;
+  vertices.reserve(2 * border.size());
+  for (const BoundaryEdge& e : border) vertices.insert(vertices.end(), {e.from, e.to});
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+std::vector<Vec3> pointsOf(const std::vector<Vec3>& positions,
+                           const std::vector<std::int32_t>& vertices) {
+  std::vector<Vec3> points;
+  points.reserve(vertices.size());
+  for (const std::int32_t v : vertices) points.push_back(positions[index(v)]);
+  return points;
+}
+
+// Welds boundary vertices at equal positions.
+BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border) {
+  BorderWeld result;
+  const std::vector<std::int32_t> vertices = verticesOf(border);
+  VertexWeld places(vertices.size());
+  std::vector<std::int32_t> first; // first vertex at each position
+  for (const std::int32_t v : vertices) {
+    const std::int32_t place = places.index(positions[index(v)]);
+    if (index(place) == first.size()) {
+      first.push_back(v);
+      continue;
+    }
+    if (result.vertex_of.empty()) {
+      result.vertex_of.resize(positions.size());
+      std::iota(result.vertex_of.begin(), result.vertex_of.end(), 0);
+    }
+    result.vertex_of[index(v)] = first[index(place)];
+  }
+  return result;
+}
+
+// Welds boundary vertices that are at most `tolerance` and a quarter of the shortest boundary edge
+// at either of them apart.
+BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border,
+                      double tolerance) {
+  constexpr double kShare = 0.25; // fraction of an edge; its ends are never welded
+  const std::vector<std::int32_t> vertices = verticesOf(border);
+  std::vector<double> reach(positions.size(), tolerance);
+  for (const BoundaryEdge& e : border) {
+    const double length = kShare * (positions[index(e.to)] - positions[index(e.from)]).norm();
+    for (const std::int32_t v : {e.from, e.to}) reach[index(v)] = std::min(reach[index(v)], length);
+  }
+  double farthest = 0;
+  for (const std::int32_t v : vertices) farthest = std::max(farthest, reach[index(v)]);
+  BorderWeld result;
+  const PointGrid grid(pointsOf(positions, vertices), farthest);
+  DisjointSets sets(positions.size());
+  bool any = false;
+  for (std::size_t n = 0; n < grid.size(); ++n) {
+    const std::int32_t v = vertices[grid.point(n)];
+    grid.forEachNear(n, reach[index(v)], [&](std::size_t m) {
+      const std::int32_t other = vertices[grid.point(m)];
+      const double distance = (positions[index(v)] - positions[index(other)]).norm();
+      if (other > v || !(distance <= reach[index(other)])) return false;
+      sets.join(v, other);
+      any = true;
+      result.widest_crack = std::max(result.widest_crack, distance);
+      return false;
+    });
+  }
+  if (any) result.vertex_of = std::move(sets).lowest();
+  return result;
+}
+
+// Splits boundary edges at boundary vertices within `tolerance` of them (T-junctions).
+SplitBorder splitBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border,
+                        double tolerance) {
+  SplitBorder result;
+  double sum = 0;
+  for (const BoundaryEdge& e : border)
+    sum += (positions[index(e.to)] - positions[index(e.from)]).norm();
+  const std::vector<std::int32_t> vertices = verticesOf(border);
+  const double side = std::max(tolerance, sum / static_cast<double>(border.size()));
+  const PointGrid grid(pointsOf(positions, vertices), side);
+  struct OnEdge {
+    double along;
+    std::int32_t vertex;
+    auto operator<=>(const OnEdge&) const = default;
+  };
+  std::vector<OnEdge> on;
+  for (const BoundaryEdge& e : border) {
+    const Vec3 from = positions[index(e.from)], way = positions[index(e.to)] - from;
+    const double length = way.norm();
+    const double near = std::min(tolerance, length / 4);
+    on.clear();
+    // Splits the edge into short sections, so that the box about each is small.
+    const auto stretches = static_cast<std::int64_t>(length / side) + 1;
+    for (std::int64_t i = 0; i < stretches; ++i) {
+      const auto place = [&](std::int64_t k) -> Vec3 {
+        return from + way * (static_cast<double>(k) / static_cast<double>(stretches));
+      };
+      Box3 box(place(i));
+      box.extend(place(i + 1));
+      box.min().array() -= near;
+      box.max().array() += near;
+      grid.forEachIn(box, [&](std::size_t n) {
+        const std::int32_t v = vertices[grid.point(n)];
+        const Vec3 p = positions[index(v)] - from;
+        const double along = p.dot(way) / (length * length);
+        const double off = (p - along * way).norm();
+        if (v == e.from || v == e.to || !(off <= near) ||
+            !(along * length > near && (1 - along) * length > near))
+          return;
+        on.push_back({along, v});
+        result.widest_crack = std::max(result.widest_crack, off);
+      });
+    }
+    std::sort(on.begin(), on.end());
+    on.erase(std::unique(on.begin(), on.end()), on.end());
+    std::int32_t last = e.from;
+    for (const OnEdge& split : on) {
+      result.edges.push_back({last, split.vertex});
+      last = split.vertex;
+    }
+    result.edges.push_back({last, e.to});
+  }
+  return result;
+}
+
+// closed_up: the weld merged two of the triangle's corners.
 enum class Fault : std::uint8_t { none, non_finite, degenerate, duplicate, closed_up };
 
 Fault faultOf(const TriangleMesh& mesh, std::size_t t) {
@@ -18,8 +168,8 @@ Fault faultOf(const TriangleMesh& mesh, std::size_t t) {
   if (!a.allFinite() || !b.allFinite() || !c.allFinite()) return Fault::non_finite;
   const Triangle& v = mesh.triangles[t];
   if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) return Fault::degenerate;
-  // In units of the largest extent, so that neither tiny nor huge squares leave the range of a
-  // double. The limit is far above the rounding of collinear points, far below any real sliver.
+  // Scales by the largest extent, so that squares stay within a double's range. The limit is far
+  // above the rounding of collinear points and far below any real sliver.
   constexpr double kFlat = 1e-12;
   Vec3 e1 = b - a, e2 = c - a, e3 = c - b;
   const double size = std::max(e1.cwiseAbs().maxCoeff(), e2.cwiseAbs().maxCoeff());
@@ -37,8 +187,8 @@ std::vector<Fault> triangleFaults(const TriangleMesh& mesh) {
   return faults;
 }
 
-// Items filed under a vertex, as one array with offsets: sorting each short run replaces a hash
-// table of all edges.
+// Items grouped by vertex in one array with offsets. Sorting each short run replaces a hash table
+// of all edges.
 template <typename Item> class ByVertex {
  public:
   ByVertex(std::size_t vertices, std::size_t items) : ends_(vertices + 1, 0) {
@@ -99,11 +249,11 @@ void markDuplicates(std::size_t vertices, const std::vector<Triangle>& triangles
 
 struct DirectedUse {
   std::int32_t high;
-  bool upwards; // the face runs from the lower vertex to the higher
+  bool upwards; // the face runs from the lower to the higher vertex
   auto operator<=>(const DirectedUse&) const = default;
 };
 
-// Adds to the report's counts; `border` receives the edges of one face.
+// Adds to the report's counts; `border` receives the edges with one face.
 template <class ForEachEdge>
 void countEdges(std::size_t vertices, std::size_t edges, const ForEachEdge& forEachEdge,
                 MeshReport& report, std::vector<BoundaryEdge>& border) {
@@ -152,8 +302,8 @@ std::size_t countComponents(std::size_t vertices, const std::vector<Triangle>& t
   return components;
 }
 
-// Counts duplicates, components and edges; the triangles may name other vertices than the mesh's.
-// Returns the edges of one face.
+// Counts duplicates, components and edges; the triangles may use other vertex indices than the
+// mesh. Returns the edges with one face.
 std::vector<BoundaryEdge> countTopology(std::size_t vertices,
                                         const std::vector<Triangle>& triangles,
                                         std::vector<Fault>& faults, MeshReport& report) {
@@ -174,8 +324,8 @@ std::vector<BoundaryEdge> countTopology(std::size_t vertices,
   return border;
 }
 
-// Closes cracks at the border and counts again: corners in one place, then corners within the
-// tolerance, then corners on an edge. The mesh itself does not change.
+// Closes cracks at the boundary and counts again: corners at equal positions, then corners within
+// the tolerance, then corners on an edge. The mesh itself does not change.
 void closeCracks(const TriangleMesh& mesh, std::vector<BoundaryEdge>& border,
                  std::vector<Fault>& faults, MeshReport& report) {
   Box3 box;
@@ -228,22 +378,6 @@ MeshReport inspect(const TriangleMesh& mesh, std::vector<Fault>& faults) {
   report.watertight = report.components > 0 && report.boundary_edges == 0 &&
                       report.non_manifold_edges == 0 && report.misoriented_edges == 0;
   return report;
-}
-
-// Keeps the vertices that triangles use, in their order.
-void removeUnusedVertices(TriangleMesh& mesh) {
-  std::vector<std::int32_t> index_of(mesh.positions.size(), -1);
-  for (const Triangle& t : mesh.triangles)
-    for (const std::int32_t v : t) index_of[static_cast<std::size_t>(v)] = 0;
-  std::int32_t used = 0;
-  for (std::size_t v = 0; v < index_of.size(); ++v) {
-    if (index_of[v] < 0) continue;
-    mesh.positions[static_cast<std::size_t>(used)] = mesh.positions[v];
-    index_of[v] = used++;
-  }
-  mesh.positions.resize(static_cast<std::size_t>(used));
-  for (Triangle& t : mesh.triangles)
-    for (std::int32_t& v : t) v = index_of[static_cast<std::size_t>(v)];
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// What is wrong with a mesh, counted; and the mesh without what no engine can use.
+// Counts the defects of a mesh and removes its unusable triangles.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +9,17 @@
 
 namespace patina {
 
-// Share of the longest side of a mesh's bounds: corners on its border that are no farther apart,
-// and no farther than a quarter of the shortest border edge at them, count as one in the report.
+// Fraction of the longest side of a mesh's bounds. Boundary corners no farther apart, and no
+// farther than a quarter of the shortest boundary edge at them, count as one in the report.
 inline constexpr double kWeldTolerance = 1e-3;
 
 struct MeshReport {
   std::size_t triangles = 0;
   std::size_t vertices = 0;
-  std::size_t components = 0; // connected through corners; as for the edges below
-  bool watertight = false;    // every edge has two faces with opposite directions
-  // Greatest distance between corners, or between a corner and an edge, that count as joined though
-  // they are apart; in the mesh's unit.
+  std::size_t components = 0; // connected through corners, after the repairs listed under edges
+  bool watertight = false;    // every edge has two faces of opposite edge direction
+  // Largest distance between corners, or between a corner and an edge, that count as joined; in the
+  // mesh's unit.
   double widest_crack = 0;
   // Triangles:
   std::size_t non_finite = 0; // a corner is NaN or infinite
@@ -29,21 +29,21 @@ struct MeshReport {
   // Edges, after the triangles above are left out and the cracks at the border are closed:
   std::size_t boundary_edges = 0;     // one face
   std::size_t non_manifold_edges = 0; // three or more
-  std::size_t misoriented_edges = 0;  // two faces running the same way
+  std::size_t misoriented_edges = 0;  // two faces of equal edge direction
 };
 
 MeshReport inspect(const TriangleMesh& mesh);
 
-// The triangles that are neither non-finite nor degenerate, ascending.
+// Returns the triangles that are neither non-finite nor degenerate, ascending.
 std::vector<std::int32_t> usableTriangles(const TriangleMesh& mesh);
 
 struct CleanMesh {
   TriangleMesh mesh;   // without non-finite and degenerate triangles; unused vertices removed
-  MeshReport report;   // of the mesh as given
+  MeshReport report;   // describes the mesh as given
   std::size_t dropped; // non_finite + degenerate
 };
-// Duplicates and misoriented faces stay: distance does not mind them and the sign rule copes.
-// Throws Error if no triangle is left.
+// Removes unusable triangles. Keeps duplicate and misoriented faces, which distances and signs
+// tolerate. Throws Error if no triangle is left.
 CleanMesh cleaned(TriangleMesh mesh);
 
 } // namespace patina

@@ -22,7 +22,7 @@ const UnitName& entry(MeshUnit unit) {
   return kUnits[static_cast<std::size_t>(unit)];
 }
 
-// Of the finite corners: a NaN in one of them must not decide the scale of all.
+// Bounds the finite corners, so that a NaN does not determine the scale.
 Box3 finiteBox(const TriangleMesh& mesh) {
   Box3 box;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -32,18 +32,18 @@ Box3 finiteBox(const TriangleMesh& mesh) {
 }
 
 constexpr double kFitted = 0.1;
-constexpr double kSmall = 1e-3; // a result outside these was hardly meant
+constexpr double kSmall = 1e-3; // lengths outside these limits are probably a mistake
 constexpr double kLarge = 2.0;
 
 } // namespace
 
 MeshUnit parseMeshUnit(std::string_view text) {
-  if (const auto unit = valueIn(kUnits, text)) return *unit;
+  if (const auto unit = parseIn(kUnits, text)) return *unit;
   throw Error("unit '" + std::string(text) + "' is unknown; mm, cm, m, in and fit are");
 }
 
 std::string_view name(MeshUnit unit) {
-  return textIn(kUnits, unit);
+  return nameIn(kUnits, unit);
 }
 
 MeshUnit likelyUnit(double longest) {
@@ -54,7 +54,7 @@ MeshUnit likelyUnit(double longest) {
 
 UpAxis parseUpAxis(std::string_view text) {
   constexpr std::array<Named<UpAxis>, 2> kAxes = {{{UpAxis::z, "z"}, {UpAxis::y, "y"}}};
-  if (const auto axis = valueIn(kAxes, text)) return *axis;
+  if (const auto axis = parseIn(kAxes, text)) return *axis;
   throw Error("up axis '" + std::string(text) + "' is unknown; z and y are");
 }
 
@@ -74,9 +74,10 @@ ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit) {
   const double farthest =
       box.isEmpty() ? 0.0
                     : result.scale * box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
-  if (!(farthest <= kFarthestCorner))
+  if (!(farthest <= kMaxCoordinate))
     throw Error("a corner lies " + formatNumber(farthest) + " m from the origin when the unit is " +
-                std::string(name(unit)) + "; the most is " + formatNumber(kFarthestCorner) + " m");
+                std::string(name(unit)) + "; the maximum is " + formatNumber(kMaxCoordinate) +
+                " m");
   if (result.scale != 1.0)
     for (Vec3& p : mesh.positions) p *= result.scale;
   const double metres = side * result.scale;

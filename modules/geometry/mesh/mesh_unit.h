@@ -1,4 +1,4 @@
-// Meshes carry no unit, and some have y upwards; this gives them metres and z.
+// Converts meshes, which carry no unit and may have y upwards, to metres with z upwards.
 #pragma once
 
 #include <string>
@@ -8,31 +8,31 @@
 
 namespace patina {
 
-enum class MeshUnit { mm, cm, m, in, fit }; // fit: longest side becomes 100 mm
+enum class MeshUnit { mm, cm, m, in, fit }; // fit: the longest side becomes 100 mm
 
 MeshUnit parseMeshUnit(std::string_view text); // throws Error naming the choices
 std::string_view name(MeshUnit unit);
 
-// In which a mesh of this longest side, in its own units, would be 32 to 316 mm long: what a hand can
-// feel. Metric; fit where there is none.
+// Returns the metric unit in which a mesh of this longest side would be 32 to 316 mm long, or fit
+// if there is none.
 MeshUnit likelyUnit(double longest);
 
-enum class UpAxis { z, y }; // of the program that wrote the file
+enum class UpAxis { z, y }; // vertical axis in the file
 
 UpAxis parseUpAxis(std::string_view text); // throws Error naming the choices
-// Turned about x so that what was up is z.
+// Rotates about x so that the vertical axis becomes z.
 TriangleMesh zUp(TriangleMesh mesh, UpAxis up);
 
-// [m] from the origin, along an axis. Areas are squared: the fourth power of a length must be a
-// double, and distances lose their signs from 1e77 on.
-inline constexpr double kFarthestCorner = 1e75;
+// Largest accepted coordinate [m]. Squared areas, the fourth power of a length, must stay finite,
+// and distances lose their signs from 1e77 on.
+inline constexpr double kMaxCoordinate = 1e75;
 
 struct ScaledMesh {
   TriangleMesh mesh;   // [m]
-  double scale = 1;    // metres a file unit
+  double scale = 1;    // metres per file unit
   std::string warning; // empty, or one line if the result is < 1 mm or > 2 m; names --unit
 };
-// Throws Error where a finite corner would lie beyond kFarthestCorner.
+// Throws Error if a finite corner would lie beyond kMaxCoordinate.
 ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit);
 
 } // namespace patina

@@ -8,7 +8,7 @@
 namespace patina {
 namespace {
 
-// Faces joined over edges, each with whether it must be turned to agree with the lowest of them.
+// Faces joined over edges, each with a flag: turned relative to the lowest face of its part.
 class Parts {
  public:
   explicit Parts(std::size_t faces) : link_(faces), one_sided_(faces), open_(faces) {
@@ -48,12 +48,12 @@ class Parts {
 
  private:
   std::vector<Link> link_;
-  std::vector<std::uint8_t> one_sided_, open_; // by root
+  std::vector<std::uint8_t> one_sided_, open_; // indexed by root
 };
 
 struct Use {
   std::int32_t high, face;
-  bool upward; // from the edge's lower vertex to its higher
+  bool upward; // the face runs from the edge's lower to its higher vertex
 };
 
 Parts connectedParts(const std::vector<Triangle>& triangles, std::size_t vertices) {
@@ -92,17 +92,17 @@ Parts connectedParts(const std::vector<Triangle>& triangles, std::size_t vertice
 }
 
 struct TurnedPart {
-  double area = 0, turned_area = 0; // of all faces, and of those that find() calls turned
-  double volume = 0;                // as the part is to be turned
+  double area = 0, turned_area = 0; // all faces; faces that find() calls turned
+  double volume = 0;                // volume after turning
   Box3 box;
-  bool turn_others = false; // those that find() does not call turned are fewer: turn them
+  bool turn_others = false; // the faces not called turned are fewer: turn those
   bool turn_all = false;
 };
 
-// Marks closed parts that face against the others.
+// Marks closed parts whose orientation differs from most of the volume.
 void compareClosed(std::vector<TurnedPart*> closed) {
-  constexpr std::size_t kMostParts = 1U << 14; // their comparison is quadratic
-  if (closed.size() < 2 || closed.size() > kMostParts) return;
+  constexpr std::size_t kMaxParts = 1U << 14; // The comparison is quadratic.
+  if (closed.size() < 2 || closed.size() > kMaxParts) return;
   const auto size = [](const TurnedPart* p) { return p->box.volume(); };
   std::stable_sort(closed.begin(), closed.end(),
                    [&](const TurnedPart* a, const TurnedPart* b) { return size(a) > size(b); });
@@ -110,7 +110,7 @@ void compareClosed(std::vector<TurnedPart*> closed) {
   std::vector<TurnedPart*> holder(closed.size());
   double volume = 0;
   for (std::size_t i = 0; i < closed.size(); ++i) {
-    for (TurnedPart* other : outer) // the last that holds it is the smallest
+    for (TurnedPart* other : outer) // The last one that contains it is the smallest.
       if (size(other) > size(closed[i]) && other->box.contains(closed[i]->box)) holder[i] = other;
     if (holder[i]) continue;
     outer.push_back(closed[i]);
@@ -127,7 +127,7 @@ std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh) {
   Parts links = connectedParts(weldedTriangles(mesh), mesh.positions.size());
   const std::size_t faces = mesh.triangles.size();
   std::vector<Parts::Link> link(faces);
-  std::vector<std::int32_t> part_of(faces, -1); // by root
+  std::vector<std::int32_t> part_of(faces, -1); // indexed by root
   std::vector<TurnedPart> parts;
   for (std::size_t f = 0; f < faces; ++f) {
     link[f] = links.find(static_cast<std::int32_t>(f));

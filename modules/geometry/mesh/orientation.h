@@ -1,4 +1,4 @@
-// Which triangles of a mesh face the wrong way.
+// Finds misoriented triangles of a mesh.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace patina {
 
-// Indices, ascending, of the triangles to turn so that
+// Returns the indices, ascending, of the triangles to turn so that
 // - faces that share an edge with just one other, vertices at equal positions being one, agree with
 //   it, the smaller area of each connected part giving way (one-sided parts stay as they are), and
 // - closed parts face the same way as most of the volume does. A part within the bounds of a larger

@@ -10,7 +10,7 @@ struct Key {
   std::uint32_t point;
 };
 
-// A radix sort, 11 bits at a time from the lowest; points of one cell keep their order.
+// Radix sort, 11 bits at a time from the lowest; points of one cell keep their order.
 void sortByCell(std::vector<Key>& keys, int bits) {
   constexpr int kDigit = 11;
   std::vector<Key> other(keys.size());
@@ -27,11 +27,11 @@ void sortByCell(std::vector<Key>& keys, int bits) {
 } // namespace
 
 PointGrid::PointGrid(const std::vector<Vec3>& points, double side) {
-  constexpr double kMostCells = 1 << 20; // along an axis
+  constexpr double kMaxCells = 1 << 20; // along an axis
   for (const Vec3& p : points) box_.extend(p);
-  if (!points.empty()) side_ = std::max(side, box_.sizes().maxCoeff() / kMostCells);
-  if (!(side_ > 0)) side_ = 1; // all points are one
-  // An empty cell at both ends of a row, so that neighbours do not wrap.
+  if (!points.empty()) side_ = std::max(side, box_.sizes().maxCoeff() / kMaxCells);
+  if (!(side_ > 0)) side_ = 1; // all points coincide
+  // Reserves an empty cell at both ends of a row, so that neighbours do not wrap.
   for (std::size_t k = 0; k < 2 && !points.empty(); ++k)
     stride_[k + 1] =
         stride_[k] * (static_cast<std::uint64_t>(box_.sizes()[static_cast<int>(k)] / side_) + 3);

@@ -1,5 +1,4 @@
-// Points sorted by the cells of a grid, to find those near each other or within a box. Internal to
-// open_parts and mesh_report.
+// Points sorted by grid cells, to find those near each other or in a box. Internal to geometry.
 #pragma once
 
 #include <algorithm>
@@ -13,19 +12,19 @@ namespace patina {
 
 class PointGrid {
  public:
-  // The points are finite. A cell is as wide as `side` [m], or wider, so that there are at most
-  // 2^20 along an axis.
+  // Takes finite points. A cell is at least `side` [m] wide, so that there are at most 2^20 along
+  // an axis.
   PointGrid(const std::vector<Vec3>& points, double side);
 
   std::size_t size() const { return placed_.size(); }
-  // The n-th point in the grid's order has this index among the given ones. A caller that keeps
-  // values of points in the grid's order has those of neighbours side by side in memory.
+  // Returns the original index of the n-th point in the grid's order. Values stored in the grid's
+  // order lie side by side in memory for neighbours.
   std::size_t point(std::size_t n) const { return placed_[n].point; }
 
-  // Calls visit(m), numbers in the grid's order, for the points that are at most `reach` from the
-  // n-th, a side or less, itself left out. Those of its own row of cells come first, and nothing
-  // more once visit returns true. Of a row 64 points are looked at, so that the time stays linear
-  // where many points are in one place. From any number of threads.
+  // Calls visit(m), indices in the grid's order, for the points at most `reach` (no more than a
+  // side) from the n-th, itself excluded. Its own row of cells comes first. Stops if visit returns
+  // true. Looks at no more than 64 points per row, so that the time stays linear if many points
+  // coincide. Any thread.
   template <class Visit> void forEachNear(std::size_t n, double reach, const Visit& visit) const {
     const Vec3 at = placed_[n].at;
     const std::uint64_t cell = placed_[n].cell;
@@ -33,8 +32,8 @@ class PointGrid {
     const auto isLast = [&](std::size_t m) {
       return (placed_[m].at - at).squaredNorm() <= square && visit(m);
     };
-    const std::size_t least = n - std::min(n, kMostMet / 2),
-                      most = std::min(placed_.size(), n + 1 + kMostMet / 2);
+    const std::size_t least = n - std::min(n, kMaxMet / 2),
+                      most = std::min(placed_.size(), n + 1 + kMaxMet / 2);
     for (std::size_t m = n + 1; m < most && placed_[m].cell <= cell + 1; ++m)
       if (isLast(m)) return;
     for (std::size_t m = n; m > least && placed_[m - 1].cell + 1 >= cell; --m)
@@ -44,13 +43,13 @@ class PointGrid {
         if (z == 0 && y == 0) continue;
         const std::uint64_t middle = cell + z + y;
         const std::size_t begin = firstFrom(middle - 1);
-        const std::size_t end = std::min(placed_.size(), begin + kMostMet);
+        const std::size_t end = std::min(placed_.size(), begin + kMaxMet);
         for (std::size_t m = begin; m < end && placed_[m].cell <= middle + 1; ++m)
           if (isLast(m)) return;
       }
   }
 
-  // Calls visit(n) for each point in the cells that a box touches, of a row of cells the first 64.
+  // Calls visit(n) for the points in the cells that a box touches, at most 64 per row of cells.
   template <class Visit> void forEachIn(const Box3& box, const Visit& visit) const {
     const Box3 within = box.intersection(box_);
     if (within.isEmpty()) return;
@@ -58,20 +57,20 @@ class PointGrid {
     for (std::uint64_t z = low[2]; z <= high[2]; z += stride_[2])
       for (std::uint64_t y = low[1]; y <= high[1]; y += stride_[1]) {
         const std::size_t begin = firstFrom(z + y + low[0]);
-        const std::size_t end = std::min(placed_.size(), begin + kMostMet);
+        const std::size_t end = std::min(placed_.size(), begin + kMaxMet);
         for (std::size_t i = begin; i < end && placed_[i].cell <= z + y + high[0]; ++i) visit(i);
       }
   }
 
  private:
-  static constexpr std::size_t kMostMet = 64;
+  static constexpr std::size_t kMaxMet = 64;
   struct Placed {
     std::uint64_t cell;
     Vec3 at;
     std::uint32_t point;
   };
 
-  // Along each axis, as parts of a cell's number.
+  // Returns the cell along each axis, as summands of its number.
   std::array<std::uint64_t, 3> cellOf(const Vec3& p) const {
     std::array<std::uint64_t, 3> cell{};
     for (int k = 0; k < 3; ++k) {
@@ -81,7 +80,7 @@ class PointGrid {
     return cell;
   }
 
-  // The first point in the grid's order whose cell is `cell` or a later one.
+  // Returns the first point in the grid's order whose cell is `cell` or a later one.
   std::size_t firstFrom(std::uint64_t cell) const {
     const std::uint64_t part = cell >> shift_;
     if (part + 1 >= starts_.size()) return placed_.size();
@@ -95,7 +94,7 @@ class PointGrid {
   double side_ = 1;
   std::array<std::uint64_t, 3> stride_{1, 1, 1};
   std::vector<Placed> placed_;
-  // The index holds, for the upper bits of a cell's number, the first point there or later.
+  // For each value of a cell number's upper bits, the first point with it or a larger one.
   std::vector<std::uint32_t> starts_;
   int shift_ = 0;
 };

@@ -8,14 +8,14 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kMaxCorners = 20'000;      // the time grows with the square of the corners
-constexpr std::size_t kMaxExchangeCorners = 128; // the exchange of edges grows faster still
-constexpr double kMaxHeight = 1e-5;              // of a flat polygon, over its size
+constexpr std::size_t kMaxCorners = 20'000;      // The time is quadratic in the corners.
+constexpr std::size_t kMaxExchangeCorners = 128; // The exchange of edges grows faster still.
+constexpr double kMaxHeight = 1e-5;              // height over size of a flat polygon
 constexpr double kThin = 1e-12; // twice the area over the square of the longest edge
-constexpr double kSpike = 1e-5; // [rad] of an outline that runs back upon itself
+constexpr double kSpike = 1e-5; // [rad], angle of an outline that reverses
 constexpr double kLessFold = 1e-9;
 
-using Corners = std::array<std::size_t, 3>; // of one triangle, as places in the polygon
+using Corners = std::array<std::size_t, 3>; // indices in the polygon
 
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -25,7 +25,7 @@ bool isBefore(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-// One polygon at a time; the arrays are kept for the next.
+// Splits one polygon at a time; reuses its arrays.
 class PolygonSplitter {
  public:
   enum class Result { fan, split, crossing, too_long };
@@ -42,7 +42,7 @@ class PolygonSplitter {
     }
     if (!(size > 0)) return Result::fan;
     for (Vec3& p : points_) p /= size;
-    normal_ = Vec3::Zero(); // Newell's: twice the area of the projections onto the three axes
+    normal_ = Vec3::Zero(); // Newell's: twice the projected areas
     for (std::size_t i = 0; i < n; ++i) normal_ += points_[i].cross(points_[(i + 1) % n]);
     if (!(normal_.norm() > kThin)) return Result::fan;
     normal_.normalize();
@@ -76,14 +76,14 @@ class PolygonSplitter {
   }
   bool fanIsSound() const {
     for (std::size_t k = 1; k + 1 < points_.size(); ++k) {
-      const Vec3 &a = points_[k], &b = points_[k + 1]; // the fan's first corner is the origin
+      const Vec3 &a = points_[k], &b = points_[k + 1]; // The fan's first corner is the origin.
       const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
       if (!(a.cross(b).dot(normal_) > kThin * longest)) return false;
     }
     return true;
   }
 
-  // Along the largest component of the normal, so that coordinates stay as they are.
+  // Projects along the largest component of the normal, so that coordinates stay unchanged.
   void project() {
     int axis = 0;
     normal_.cwiseAbs().maxCoeff(&axis);
@@ -93,7 +93,7 @@ class PolygonSplitter {
       flat_.push_back(normal_[axis] > 0 ? Vec2(p[u], p[v]) : Vec2(p[v], p[u]));
   }
 
-  // Above 0 where the way from a over b to c turns left, 0 where the three are in line.
+  // Returns > 0 for a left turn from a over b to c, 0 if the three are collinear.
   double turn(std::size_t a, std::size_t b, std::size_t c) const {
     const Vec2 ab = flat_[b] - flat_[a], ac = flat_[c] - flat_[a], bc = flat_[c] - flat_[b];
     const double twice_area = cross(ab, ac);
@@ -105,7 +105,7 @@ class PolygonSplitter {
 
   bool isEar(std::size_t b, Ear wanted) const {
     const std::size_t a = previous_[b], c = next_[b];
-    if (wanted == Ear::spike) { // the outline runs back at b
+    if (wanted == Ear::spike) { // the outline reverses at b
       const Vec2 ba = flat_[a] - flat_[b], bc = flat_[c] - flat_[b];
       return ba.dot(bc) > 0 && std::abs(cross(ba, bc)) <= kSpike * ba.dot(bc);
     }
@@ -117,7 +117,7 @@ class PolygonSplitter {
       if (!convex_[p] && blocks(p, a, b, c)) return false;
     return true;
   }
-  // Whether the outline at corner p enters the triangle or touches its border.
+  // Returns true if the outline at corner p enters the triangle or touches its boundary.
   bool blocks(std::size_t p, std::size_t a, std::size_t b, std::size_t c) const {
     if (flat_[p] == flat_[a] || flat_[p] == flat_[c]) return false;
     if (flat_[p] == flat_[b]) return entersAt(b, previous_[p]) || entersAt(b, next_[p]);
@@ -152,21 +152,21 @@ class PolygonSplitter {
     }
     for (std::size_t i = 0; i < n; ++i) convex_[i] = turn(previous_[i], i, next_[i]) > 0;
     std::size_t at = 0;
-    bool has_spikes = true; // go first: nothing tells whether their corners are inside an ear
+    bool has_spikes = true; // They go first: whether their corners lie inside an ear is undefined.
     for (std::size_t left = n; left > 3; --left) {
       has_spikes = has_spikes && findEar(at, left, Ear::spike);
       if (!has_spikes && !findEar(at, left, Ear::sound) && !findEar(at, left, Ear::without_area))
-        findEar(at, left, Ear::any); // only an outline that crosses itself gets here
+        findEar(at, left, Ear::any); // only if the outline crosses itself
       const std::size_t a = previous_[at], c = next_[at];
       triangles_.push_back({a, at, c});
       next_[a] = c;
       previous_[c] = a;
       for (const std::size_t i : {a, c}) convex_[i] = turn(previous_[i], i, next_[i]) > 0;
-      at = next_[c]; // to clip the next ear elsewhere makes fewer slender triangles
+      at = next_[c]; // Clipping the next ear elsewhere makes fewer slender triangles.
     }
     triangles_.push_back({previous_[at], at, next_[at]});
   }
-  // Moves `at` to an ear; leaves it where there is none.
+  // Moves `at` to an ear, or leaves it if there is none.
   bool findEar(std::size_t& at, std::size_t left, Ear wanted) const {
     for (std::size_t tried = 0; tried < left; ++tried, at = next_[at])
       if (isEar(at, wanted)) return true;
@@ -176,12 +176,12 @@ class PolygonSplitter {
   Vec3 unitNormal(std::size_t a, std::size_t b, std::size_t c) const {
     return (points_[b] - points_[a]).cross(points_[c] - points_[a]).normalized();
   }
-  // Cosine of the fold along the edge from a to c of the triangles (a, b, c) and (c, d, a).
+  // Returns the cosine of the fold between the triangles (a, b, c) and (c, d, a).
   double foldCosine(std::size_t a, std::size_t b, std::size_t c, std::size_t d) const {
     return unitNormal(a, b, c).dot(unitNormal(c, d, a));
   }
 
-  // Exchanges an edge between two triangles for the other diagonal while that one is folded less.
+  // Flips an edge between two triangles while the other diagonal is folded less.
   void reduceFolds() {
     bool changed = true;
     for (std::size_t pass = 0; changed && pass < triangles_.size(); ++pass) {
@@ -197,7 +197,7 @@ class PolygonSplitter {
         const std::size_t c = s[i], a = s[(i + 1) % 3], b = s[(i + 2) % 3];
         if (t[j] != a || t[(j + 1) % 3] != c) continue;
         const std::size_t d = t[(j + 2) % 3];
-        const double cosine = foldCosine(d, a, b, c); // 0 where one has no area
+        const double cosine = foldCosine(d, a, b, c); // 0 if one has no area
         if (cosine == 0 || !(cosine > foldCosine(a, b, c, d) + kLessFold)) return false;
         s = {d, a, b};
         t = {b, c, d};
@@ -206,11 +206,11 @@ class PolygonSplitter {
     return false;
   }
 
-  std::vector<Vec3> points_; // from the first corner, in units of the polygon's size
+  std::vector<Vec3> points_; // relative to the first corner, in units of the polygon's size
   Vec3 normal_;
-  std::size_t start_ = 0; // the corner from which the ears are clipped
+  std::size_t start_ = 0; // first corner of the ear clipping
   std::vector<Vec2> flat_;
-  std::vector<std::size_t> previous_, next_; // corners that are left, as a ring
+  std::vector<std::size_t> previous_, next_; // remaining corners, as a ring
   std::vector<char> convex_;
   std::vector<Corners> triangles_;
 };
@@ -225,7 +225,7 @@ PolygonFaults splitPolygons(TriangleMesh& mesh, const std::vector<PolygonFan>& f
   std::vector<Vec3> points;
   const bool textured = !mesh.corner_uvs.empty();
   for (const PolygonFan& fan : fans) {
-    const auto cornerOf = [&](std::size_t i) { // in the fan: a triangle and a corner of it
+    const auto cornerOf = [&](std::size_t i) { // in the fan: a triangle and its corner
       const std::size_t triangle = i < 2 ? 0 : i - 2;
       return std::pair(fan.first_triangle + triangle, i < 2 ? i : std::size_t{2});
     };

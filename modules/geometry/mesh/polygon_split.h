@@ -1,4 +1,4 @@
-// Splits polygons into triangles, as readers of polygons need it.
+// Splits polygons into triangles for the mesh readers.
 #pragma once
 
 #include <string>
@@ -20,9 +20,9 @@ struct PolygonFaults {
 };
 
 // Replaces each fan by as many triangles that keep the polygon's outline (ear clipping, Meisters
-// 1975). A flat polygon whose fan is sound keeps it bit for bit. Of a polygon that is not flat the
-// edges inside are then exchanged for the ones with the smaller fold; the result does not depend on
-// which corner comes first. Polygons without area or with corners that are not finite stay fans.
+// 1975). A flat polygon whose fan is valid keeps it bit for bit. In a non-flat polygon inner edges
+// are flipped to reduce the folds; the result does not depend on the first corner. Polygons without
+// area or with non-finite corners stay fans.
 PolygonFaults splitPolygons(TriangleMesh& mesh, const std::vector<PolygonFan>& fans);
 
 // One line for each kind of fault.

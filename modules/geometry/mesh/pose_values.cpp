@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-// sin and cos of whole quarter turns exactly, so that 90 degrees leaves no dust in the matrix.
+// Uses exact values for multiples of 90 degrees, so that the matrix has no rounding residue.
 Eigen::Matrix3d turn(int axis, double degrees) {
   const double quarters = degrees / 90;
   double s = std::sin(degrees * kDegree), c = std::cos(degrees * kDegree);

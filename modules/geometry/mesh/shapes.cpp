@@ -32,8 +32,8 @@ constexpr std::array<Triangle, 20> kIcosahedronFaces = {
      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
 
-// Vertices along the edges of the icosahedron are shared by two faces: one run of them an edge,
-// stored from the lower vertex to the higher.
+// Vertices along the edges of the icosahedron, which two faces share: one run per edge, stored from
+// the lower vertex to the higher.
 class EdgeRuns {
  public:
   EdgeRuns(TriangleMesh& mesh, double radius, int frequency)
@@ -175,7 +175,7 @@ TriangleMesh vase(double height, double wall, int around, int along) {
     const double step = 1e-6 * height;
     return (radius(z + step) - radius(z - step)) / (2 * step);
   };
-  // The profile from the axis below, up the outside, over the rim, down the inside to the axis.
+  // Profile from the axis at the bottom, up the outside, over the rim, down the inside to the axis.
   std::vector<Vec2> profile; // (r, z)
   for (int i = 0; i < along; ++i) {
     const double z = height * i / (along - 1);
@@ -219,6 +219,25 @@ TriangleMesh sheet(double width, double depth, int cells) {
       addQuad(mesh, p, p + 1, p + row + 1, p + row);
     }
   return mesh;
+}
+
+TriangleMesh withShrunkenTriangles(const TriangleMesh& mesh, double fraction) {
+  TriangleMesh result;
+  result.positions.reserve(3 * mesh.triangles.size());
+  result.triangles.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 centroid = (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
+    const auto first = static_cast<std::int32_t>(result.positions.size());
+    for (int k = 0; k < 3; ++k)
+      result.positions.push_back(mesh.corner(t, k) + fraction * (centroid - mesh.corner(t, k)));
+    result.triangles.push_back({first, first + 1, first + 2});
+  }
+  result.corner_uvs = mesh.corner_uvs;
+  for (auto& uv : result.corner_uvs) {
+    const Vec2 centre = (uv[0] + uv[1] + uv[2]) / 3;
+    for (Vec2& c : uv) c += fraction * (centre - c);
+  }
+  return result;
 }
 
 } // namespace patina

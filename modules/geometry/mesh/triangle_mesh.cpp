@@ -25,7 +25,7 @@ Vec3 doubleAreaVector(const TriangleMesh& mesh, std::size_t triangle) {
 } // namespace
 
 Vec3 faceNormal(const TriangleMesh& mesh, std::size_t triangle) {
-  // Edges are scaled to unit size first: squares of tiny lengths would underflow.
+  // Scales the edges to unit size first, because squares of tiny lengths would underflow.
   const Vec3 a = mesh.corner(triangle, 0);
   Vec3 e1 = mesh.corner(triangle, 1) - a;
   Vec3 e2 = mesh.corner(triangle, 2) - a;
@@ -47,7 +47,7 @@ double area(const TriangleMesh& mesh) {
 
 double volume(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return 0;
-  // About a point of the mesh: far from the origin the terms would cancel badly.
+  // Uses a point of the mesh as origin: far from it the terms would cancel badly.
   const Vec3 origin = mesh.corner(0, 0);
   double sum = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -85,6 +85,21 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
   TriangleMesh result = a;
   append(result, b);
   return result;
+}
+
+void removeUnusedVertices(TriangleMesh& mesh) {
+  std::vector<std::int32_t> index_of(mesh.positions.size(), -1);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::int32_t v : t) index_of[static_cast<std::size_t>(v)] = 0;
+  std::int32_t used = 0;
+  for (std::size_t v = 0; v < index_of.size(); ++v) {
+    if (index_of[v] < 0) continue;
+    mesh.positions[static_cast<std::size_t>(used)] = mesh.positions[v];
+    index_of[v] = used++;
+  }
+  mesh.positions.resize(static_cast<std::size_t>(used));
+  for (Triangle& t : mesh.triangles)
+    for (std::int32_t& v : t) v = index_of[static_cast<std::size_t>(v)];
 }
 
 } // namespace patina

@@ -29,17 +29,18 @@ struct SurfacePoint {
   Vec3 barycentric = Vec3::Zero();
 };
 
-Box3 bounds(
-    const TriangleMesh& mesh); // of the vertices that triangles use; empty if there are none
+Box3 bounds(const TriangleMesh& mesh); // bounds of the used vertices; empty if there are none
 Vec3 position(const TriangleMesh& mesh, const SurfacePoint& point);
 Vec3 faceNormal(const TriangleMesh& mesh, std::size_t triangle); // unit; zero if degenerate
 double area(const TriangleMesh& mesh);
-// Signed, by the divergence theorem; meaningful for a closed mesh only.
+// Signed, by the divergence theorem; meaningful for closed meshes only.
 double volume(const TriangleMesh& mesh);
-// A reflection turns the triangles round too, so that outside stays outside.
+// A reflection also reverses the triangles, so that the outside stays outside.
 TriangleMesh transformed(const TriangleMesh& mesh, const Eigen::Affine3d& target_from_mesh);
-// The triangles of `other` behind the mesh's own; texture coordinates only if both have them.
+// Appends the triangles of `other`; texture coordinates remain only if both have them.
 void append(TriangleMesh& mesh, const TriangleMesh& other);
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
+// Keeps the vertices that triangles use, in their order.
+void removeUnusedVertices(TriangleMesh& mesh);
 
 } // namespace patina

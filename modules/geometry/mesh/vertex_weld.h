@@ -1,4 +1,4 @@
-// Gives equal points one index, by a hash of their bits.
+// Gives equal points one index by a hash of their bits.
 #pragma once
 
 #include <bit>

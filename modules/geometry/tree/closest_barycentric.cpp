@@ -6,8 +6,8 @@
 namespace patina {
 
 Vec3 closestBarycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  // Weights from areas about the corners nearest to p rather than from dot products with one
-  // corner: on needles those cancel and slide the point along the triangle.
+  // Uses areas about the corners nearest to p. Dot products with one corner would cancel on needles
+  // and slide the point along the triangle.
   const Vec3 ab = b - a, bc = c - b, ca = a - c;
   const Vec3 normal = bc.cross(ca);
   const double wa = normal.dot(bc.cross(p - b));
@@ -15,7 +15,7 @@ Vec3 closestBarycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3&
   const double wc = normal.dot(ab.cross(p - a));
   if (wa > 0 && wb > 0 && wc > 0) return Vec3(wa, wb, wc) / (wa + wb + wc);
 
-  // The nearest edge is one that p can see.
+  // The nearest edge faces p.
   double best = std::numeric_limits<double>::infinity();
   Vec3 result(1, 0, 0);
   const auto tryEdge = [&](const Vec3& from, const Vec3& edge, int i, int j) {

@@ -1,4 +1,4 @@
-// The kernel for any processor, and the choice at run time.
+// The kernel for any processor, and the selection at run time.
 #include "core/processor.h"
 
 #define PATINA_KERNEL packet_plain
@@ -38,14 +38,6 @@ void trianglesNear(PointJob& job) {
   if (hasWideLanes()) return packet_avx2::pointCandidates(job);
 #endif
   packet_plain::pointCandidates(job);
-}
-
-void trianglesNearPlain(PointJob& job) {
-  packet_plain::pointCandidates(job);
-}
-
-void closestOnLatticePlain(const LatticeJob& job) {
-  packet_plain::lattice(job);
 }
 
 } // namespace patina

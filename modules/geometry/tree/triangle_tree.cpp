@@ -14,7 +14,7 @@ namespace patina {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-// Float boxes are padded for coordinates near the mesh; farther points err relative to distance.
+// Padding suits coordinates near the mesh; farther points err relative to their distance.
 constexpr double kBoxSlack = 1 + 4e-6;
 // Squared distances closer than this are ties.
 constexpr double kTie = 1 + 1e-11, kTieFloor = 1e-24;
@@ -25,22 +25,23 @@ struct Entry {
   std::int32_t child;
 };
 
-// A fixed stack with the nearest child on top.
+// Fixed-size stack with the nearest child on top.
 struct Stack {
   std::array<Entry, kStack> entries;
   std::size_t top = 0, base = 0;
 
   void beginNode() { base = top; }
   void push(float key, std::int32_t child) {
-    std::size_t slot = top++;
-    while (slot > base && entries[slot - 1].key < key) {
-      entries[slot] = entries[slot - 1];
-      --slot;
+    std::size_t position = top++;
+    while (position > base && entries[position - 1].key < key) {
+      entries[position] = entries[position - 1];
+      --position;
     }
-    entries[slot] = {key, child};
+    entries[position] = {key, child};
   }
 };
 
+// Computes squared distances of a node's boxes.
 void boxDistances(const WideNode& node, const std::array<float, 3>& p, float* d2) {
   for (int i = 0; i < kWide; ++i) d2[i] = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -52,22 +53,38 @@ void boxDistances(const WideNode& node, const std::array<float, 3>& p, float* d2
   }
 }
 
-bool isEmpty(const WideNode& node, std::size_t place) {
-  return node.half[0][place] < 0;
+// Computes those of its boxes and cylinders; only these tell apart slivers that lie side by side.
+void childDistances(const WideNode& node, const std::array<float, 3>& p, float* d2) {
+  boxDistances(node, p, d2);
+  for (int i = 0; i < kWide; ++i) {
+    const float x = p[0] - node.centre[0][i], y = p[1] - node.centre[1][i],
+                z = p[2] - node.centre[2][i];
+    const float nx = node.normal[0][i], ny = node.normal[1][i], nz = node.normal[2][i];
+    const float along = x * nx + y * ny + z * nz;
+    const float ax = x - along * nx, ay = y - along * ny, az = z - along * nz;
+    const float over = std::max(std::max(along - node.high[i], node.low[i] - along), 0.0f);
+    const float out = std::max(std::sqrt(ax * ax + ay * ay + az * az) - node.radius[i], 0.0f);
+    d2[i] = std::max(d2[i], (1 - 1e-5f) * (over * over + out * out));
+  }
+}
+
+bool isEmpty(const WideNode& node, std::size_t slot) {
+  return node.half[0][slot] < 0;
 }
 
 } // namespace
 
 struct TriangleTree::Impl {
   Vec3 centre = Vec3::Zero();
-  double unit = 1; // metres: half the longest side, so that sizes differ by double rounding only
+  double unit = 1; // [m], half the longest side
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
+  std::vector<CopiedFace> copies; // have no leaf: the first wins each tie
   std::vector<WideNode> nodes;
-  std::int32_t inner = 0; // nodes from here on have a block
+  std::int32_t first_leaf_node = 0; // first node with a block
   std::vector<PacketTriangle> leaves;
   std::vector<TriangleBlock> blocks;
-  float mean_edge = 0; // longest edge of a leaf
+  float mean_edge = 0; // mean of the leaves' longest edges
 
   Vec3 toTree(const Vec3& p) const { return (p - centre) / unit; }
   const Vec3& corner(std::int32_t face, std::size_t which) const {
@@ -80,7 +97,7 @@ struct TriangleTree::Impl {
     return w[0] * corner(face, 0) + w[1] * corner(face, 1) + w[2] * corner(face, 2);
   }
 
-  // Lowest face among the nearest, for a running search in tree units.
+  // Lowest of the nearest faces in a running search, in tree units.
   struct Nearest {
     double best = kInf; // squared
     double face_d2 = kInf;
@@ -108,14 +125,14 @@ struct TriangleTree::Impl {
     return result;
   }
 
-  // Float finds the few faces that double has to decide between. False if they are not few, or the
-  // point is too far for float.
+  // Selects by float the few faces that double must compare. Returns false if they are too many, or
+  // the point is too far for float.
   bool nearestAmongCandidates(const Vec3& p, Nearest& result) const {
     const double far = p.cwiseAbs().maxCoeff();
     if (far > 1e3) return false;
     PointJob job;
     job.nodes = nodes.data();
-    job.inner = inner;
+    job.first_leaf_node = first_leaf_node;
     job.blocks = blocks.data();
     job.triangles = leaves.data();
     job.corners = triangles.data()->data();
@@ -146,7 +163,7 @@ struct TriangleTree::Impl {
       }
       const WideNode& node = nodes[static_cast<std::size_t>(entry.child)];
       alignas(32) std::array<float, kWide> d2;
-      boxDistances(node, f, d2.data());
+      childDistances(node, f, d2.data());
       stack.beginNode();
       for (std::size_t i = 0; i < kWide; ++i)
         if (d2[i] <= limit && !isEmpty(node, i)) stack.push(d2[i], node.child[i]);
@@ -181,9 +198,10 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     impl->positions[i] = impl->toTree(mesh.positions[i]);
 
-  TrianglePieces pieces = piecesOf(impl->positions, impl->triangles);
+  impl->copies = findManyCopies(impl->positions, impl->triangles);
+  TrianglePieces pieces = piecesOf(impl->positions, impl->triangles, impl->copies);
   impl->nodes = buildWideBvh(pieces.boxes);
-  impl->inner = moveLeavesBehind(impl->nodes);
+  impl->first_leaf_node = partitionLeavesLast(impl->nodes);
   impl->leaves.resize(pieces.boxes.size());
   const auto faces = static_cast<std::int32_t>(impl->triangles.size());
   tbb::parallel_for(
@@ -201,7 +219,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
         }
       });
   fitCylinders(impl->nodes, impl->leaves);
-  impl->blocks = triangleBlocks(impl->nodes, impl->inner, impl->leaves);
+  impl->blocks = triangleBlocks(impl->nodes, impl->first_leaf_node, impl->leaves);
   double edges = 0;
   for (const PacketTriangle& leaf : impl->leaves) edges += static_cast<double>(leaf.ab);
   impl->mean_edge = static_cast<float>(edges / static_cast<double>(impl->leaves.size()));
@@ -255,13 +273,20 @@ std::vector<std::int32_t> TriangleTree::facesInSphere(const Vec3& centre, double
   }
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  if (impl_->copies.empty()) return faces;
+  for (std::size_t i = 0, found = faces.size(); i < found; ++i)
+    for (auto copied =
+             std::lower_bound(impl_->copies.begin(), impl_->copies.end(), CopiedFace{faces[i], 0});
+         copied != impl_->copies.end() && copied->first == faces[i]; ++copied)
+      faces.push_back(copied->copy);
+  std::sort(faces.begin(), faces.end());
   return faces;
 }
 
 namespace {
 
-// A ray in the frame where it runs along +z: edge functions then have exact signs that neighbours
-// share, so that no ray slips through a common edge.
+// Ray in a sheared frame where it runs along +z (Woop, Benthin & Wald 2013). Neighbours share exact
+// signs of the edge functions, so that no ray slips through a common edge.
 struct ShearedRay {
   ShearedRay(const Vec3& origin_, const Vec3& direction) : origin(origin_) {
     direction.cwiseAbs().maxCoeff(&kz);
@@ -277,7 +302,7 @@ struct ShearedRay {
     const Vec3 r = p - origin;
     return {r[kx] - sx * r[kz], r[ky] - sy * r[kz], sz * r[kz]};
   }
-  // False if missed; t along the direction's length.
+  // Returns false on a miss; t is in units of the direction's length.
   bool hits(const Vec3& pa, const Vec3& pb, const Vec3& pc, double& t, Vec3& w) const {
     const Vec3 a = sheared(pa), b = sheared(pb), c = sheared(pc);
     const double u = c[0] * b[1] - c[1] * b[0];
@@ -296,12 +321,12 @@ struct ShearedRay {
   double sx = 0, sy = 0, sz = 0;
 };
 
-// Where the ray enters a child's box, or +infinity.
-double entry(const WideNode& node, std::size_t place, const ShearedRay& ray, double max_t) {
+// Returns where the ray enters a child's box, or +infinity.
+double entry(const WideNode& node, std::size_t slot, const ShearedRay& ray, double max_t) {
   double near = 0, far = max_t;
   for (int axis = 0; axis < 3; ++axis) {
-    const double r = static_cast<double>(node.centre[axis][place]) - ray.origin[axis];
-    const double half = static_cast<double>(node.half[axis][place]);
+    const double r = static_cast<double>(node.centre[axis][slot]) - ray.origin[axis];
+    const double half = static_cast<double>(node.half[axis][slot]);
     const double t0 = (r - half) * ray.inverse[axis], t1 = (r + half) * ray.inverse[axis];
     near = std::max(near, std::min(t0, t1));
     far = std::min(far, std::max(t0, t1));
@@ -359,7 +384,7 @@ void TriangleTree::closestOnLattice(const Vec3& origin, double spacing, int side
     throw std::invalid_argument("closestOnLattice: side must be even and the answers side^3");
   const Vec3 at = impl_->toTree(origin);
   const LatticeJob job{impl_->nodes.data(),
-                       impl_->inner,
+                       impl_->first_leaf_node,
                        impl_->blocks.data(),
                        impl_->leaves.data(),
                        impl_->mean_edge,
@@ -383,6 +408,7 @@ std::size_t TriangleTree::size() const {
 std::size_t TriangleTree::bytes() const {
   return sizeof(Impl) + impl_->positions.capacity() * sizeof(Vec3) +
          impl_->triangles.capacity() * sizeof(Triangle) +
+         impl_->copies.capacity() * sizeof(CopiedFace) +
          impl_->nodes.capacity() * sizeof(WideNode) +
          impl_->leaves.capacity() * sizeof(PacketTriangle) +
          impl_->blocks.capacity() * sizeof(TriangleBlock);

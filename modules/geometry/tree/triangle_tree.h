@@ -22,10 +22,9 @@ struct RayHit {
   double t = 0; // along the unit direction [m]
 };
 
-// Built once in double precision about the mesh's own centre, so that coordinates far from the
-// origin lose nothing. Immutable: queries may run on any number of threads. Holds its own copy.
-// Every triangle must be finite (see cleaned()); throws std::invalid_argument otherwise or if
-// empty.
+// Built in double precision about the mesh's own centre, so that coordinates far from the origin
+// lose no accuracy. Immutable: queries may run on any number of threads. Holds its own copy. Every
+// triangle must be finite (see cleaned()); throws std::invalid_argument otherwise or if empty.
 class TriangleTree {
  public:
   explicit TriangleTree(const TriangleMesh& mesh);
@@ -33,22 +32,23 @@ class TriangleTree {
   TriangleTree& operator=(TriangleTree&&) noexcept;
   ~TriangleTree();
 
-  // Exact. warm_face: a face thought to be near (say, the neighbour's answer); only speed depends
-  // on it. A point that is not finite gets face -1 and an infinite distance.
+  // Exact. warm_face: a face that is probably near, such as a neighbour's answer; affects only the
+  // speed. A point that is not finite gets face -1 and an infinite distance.
   ClosestPoint closestPoint(const Vec3& p, std::int32_t warm_face = -1) const;
-  // Nullopt if nothing is within max_distance.
+  // Returns nullopt if nothing is within max_distance.
   std::optional<ClosestPoint> closestPointWithin(const Vec3& p, double max_distance,
                                                  std::int32_t warm_face = -1) const;
-  // First hit with t in [0, max_t]; either side of a triangle counts. direction need not be unit.
+  // Returns the first hit with t in [0, max_t], on either side of a triangle. direction need not be
+  // unit.
   std::optional<RayHit> firstHit(const Vec3& origin, const Vec3& direction, double max_t) const;
-  // All faces whose distance to the centre is <= radius, ascending.
+  // Returns all faces whose distance to the centre is <= radius, ascending.
   std::vector<std::int32_t> facesInSphere(const Vec3& centre, double radius) const;
 
-  // Distances and faces of the side^3 points origin + spacing * (i, j, k), x fastest; side even.
-  // Distances count in spacings; where nothing is within max_distance [m] they are infinite and the
-  // face is -1. Faces whose distances agree to 2e-6 relative plus 1e-7 of the mesh's extent are a
-  // tie, which the lowest wins: up to there the distance is that of the face named. Several times
-  // faster than one query a point; side 8 is the fastest. Any number of threads.
+  // Returns distances and faces of the side^3 points origin + spacing * (i, j, k), x fastest; side
+  // even. Distances are in spacings; beyond max_distance [m] they are infinite and the face is -1.
+  // Faces whose distances agree to 2e-6 relative plus 1e-7 of the mesh's extent are a tie, which
+  // the lowest wins; the distance is that of the returned face. Several times faster than single
+  // queries; side 8 is the fastest. Any number of threads.
   void closestOnLattice(const Vec3& origin, double spacing, int side, double max_distance,
                         std::span<float> distance, std::span<std::int32_t> face) const;
 
@@ -60,8 +60,8 @@ class TriangleTree {
   std::unique_ptr<const Impl> impl_;
 };
 
-// Closest point on one triangle: barycentric coordinates, exact in all seven Voronoi regions and
-// for triangles without area.
+// Returns barycentric coordinates of the closest point of one triangle, exact in all seven Voronoi
+// regions and for triangles without area.
 Vec3 closestBarycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 } // namespace patina

@@ -12,10 +12,10 @@
 
 namespace patina {
 
+using winding::ClusterNode4;
 using winding::Float4;
 using winding::Mask4;
 using winding::Packet;
-using winding::Quad;
 using winding::Tree;
 
 namespace {
@@ -58,8 +58,8 @@ Point4 minus(const std::array<Float4, 3>& a, const Point4& b) {
   return {a[0] - b.x, a[1] - b.y, a[2] - b.z};
 }
 
-// Half solid angles add as arguments of complex numbers multiply, so that one arc tangent serves
-// all triangles of a query; whole turns are counted where the running argument passes +-pi.
+// Adds half solid angles by multiplying complex numbers, so that one arc tangent serves all
+// triangles of a query; counts the full turns where the argument passes +-pi.
 class SolidAngles {
  public:
   void add(const Packet& packet, const Point4& q) {
@@ -72,7 +72,7 @@ class SolidAngles {
     Float4 im = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) +
                 a.z * (b.x * c.y - b.y * c.x);
     Float4 re = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    // On a corner both vanish: no angle.
+    // At a corner both vanish: no angle.
     const Float4 size = root(re * re + im * im);
     const Mask4 some = size > splat(1e-30F);
     const Float4 scale = splat(1) / select(some, size, splat(1));
@@ -84,7 +84,7 @@ class SolidAngles {
     const Float4 im_next = re_ * im + im_ * re;
     const Mask4 up = (im_ >= zero) & (im >= zero) & (im_next < zero);
     const Mask4 down = (im_ < zero) & (im < zero) & (im_next >= zero);
-    turns_ += down - up; // masks are -1 where true
+    turns_ += down - up; // Masks are -1 for true.
     re_ = re_next;
     im_ = im_next;
   }
@@ -104,20 +104,20 @@ class SolidAngles {
   Mask4 turns_ = {0, 0, 0, 0};
 };
 
-// Adds the expansions of the far lanes; returns the lanes that are near, as bits.
-int addFar(const Quad& quad, const Point4& q, Float4& solid_angle) {
-  const Point4 r = minus(quad.centre, q);
+// Adds the expansions of the far lanes; returns the near lanes as bits.
+int addFar(const ClusterNode4& node, const Point4& q, Float4& solid_angle) {
+  const Point4 r = minus(node.centre, q);
   const Float4 xx = r.x * r.x;
   const Float4 yy = r.y * r.y;
   const Float4 zz = r.z * r.z;
   const Float4 squared = xx + yy + zz;
-  const Mask4 far = squared > quad.far_squared;
+  const Mask4 far = squared > node.far_squared;
   const Float4 inverse = splat(1) / squared;
-  const Float4 first = quad.dipole[0] * r.x + quad.dipole[1] * r.y + quad.dipole[2] * r.z;
-  const auto& m = quad.second;
+  const Float4 first = node.dipole[0] * r.x + node.dipole[1] * r.y + node.dipole[2] * r.z;
+  const auto& m = node.second;
   const Float4 second = m[0] * xx + m[1] * yy + m[2] * zz + m[3] * (r.x * r.y) +
                         m[4] * (r.x * r.z) + m[5] * (r.y * r.z);
-  const auto& s = quad.third;
+  const auto& s = node.third;
   const Float4 third = r.x * (s[0] * xx + s[5] * yy + s[7] * zz + s[9] * (r.y * r.z)) +
                        r.y * (s[1] * yy + s[3] * xx + s[8] * zz) +
                        r.z * (s[2] * zz + s[4] * xx + s[6] * yy);
@@ -146,29 +146,29 @@ WindingNumber::~WindingNumber() = default;
 double WindingNumber::at(const Vec3& p) const {
   const Tree& tree = impl_->tree;
   const Vec3 local = (p - tree.origin) * tree.scale;
-  // Farther off (or not a number) the solid angle is below any use, and squares would overflow.
-  if (tree.quads.empty() || !(local.cwiseAbs().maxCoeff() < 1e6)) return 0;
+  // Farther away (or NaN) the solid angle is negligible, and squares would overflow.
+  if (tree.nodes.empty() || !(local.cwiseAbs().maxCoeff() < 1e6)) return 0;
   const Point4 q{splat(static_cast<float>(local.x())), splat(static_cast<float>(local.y())),
                  splat(static_cast<float>(local.z()))};
 
-  // Depth first: at most three waiting a level, and no tree is deeper than the codes' 30 bits and
-  // the halvings of what shares a code.
+  // Depth first: at most three entries a level remain, and the tree is no deeper than the 30 bits
+  // of a code plus the halvings of equal codes.
   std::array<std::int32_t, 256> stack;
   std::size_t waiting = 0;
   stack[waiting++] = 0;
   Float4 far = splat(0);
   SolidAngles near;
   while (waiting > 0) {
-    const Quad& quad = tree.quads[static_cast<std::size_t>(stack[--waiting])];
-    const int lanes = addFar(quad, q, far);
+    const ClusterNode4& node = tree.nodes[static_cast<std::size_t>(stack[--waiting])];
+    const int lanes = addFar(node, q, far);
     for (std::size_t lane = 0; lane < 4; ++lane) {
       if (!(lanes >> lane & 1)) continue;
-      if (quad.children[lane] >= 0) {
-        stack[waiting++] = quad.children[lane];
+      if (node.children[lane] >= 0) {
+        stack[waiting++] = node.children[lane];
         continue;
       }
-      for (std::uint32_t i = 0; i < quad.packet_count[lane]; ++i)
-        near.add(tree.packets[quad.first_packet[lane] + i], q);
+      for (std::uint32_t i = 0; i < node.packet_count[lane]; ++i)
+        near.add(tree.packets[node.first_packet[lane] + i], q);
     }
   }
   return near.turns() + static_cast<double>(sum(far)) / (4 * std::numbers::pi);
@@ -176,22 +176,7 @@ double WindingNumber::at(const Vec3& p) const {
 
 std::size_t WindingNumber::bytes() const {
   return sizeof(Impl) + impl_->tree.packets.capacity() * sizeof(Packet) +
-         impl_->tree.quads.capacity() * sizeof(Quad);
-}
-
-double windingNumberBruteForce(const TriangleMesh& mesh, const Vec3& p) {
-  double total = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vec3 a = mesh.corner(t, 0) - p;
-    const Vec3 b = mesh.corner(t, 1) - p;
-    const Vec3 c = mesh.corner(t, 2) - p;
-    const double la = a.norm();
-    const double lb = b.norm();
-    const double lc = c.norm();
-    total +=
-        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return total / (2 * std::numbers::pi);
+         impl_->tree.nodes.capacity() * sizeof(ClusterNode4);
 }
 
 } // namespace patina

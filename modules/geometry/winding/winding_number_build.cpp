@@ -20,14 +20,14 @@ template <typename Body> void parallel(std::size_t count, const Body& body) {
   });
 }
 
-std::uint32_t spread(std::uint32_t x) { // two zero bits after each of ten
+std::uint32_t spread(std::uint32_t x) { // inserts two zero bits after each of ten
   x = (x | x << 16) & 0x030000FF;
   x = (x | x << 8) & 0x0300F00F;
   x = (x | x << 4) & 0x030C30C3;
   return (x | x << 2) & 0x09249249;
 }
 
-// Stable, so that equal codes stay in the order of their triangles.
+// Stable: equal codes keep the order of their triangles.
 void sortByCode(std::vector<Item>& items) {
   constexpr std::size_t kDigits = 1U << 10;
   std::vector<Item> other(items.size());
@@ -73,8 +73,8 @@ struct Range {
   std::uint32_t size() const { return end - begin; }
 };
 
-// Where the highest bit that differs changes, so that both halves are compact; the middle if all
-// codes are equal.
+// Returns where the highest differing bit changes, so that both halves are compact, or the middle
+// if all codes are equal.
 std::uint32_t splitOf(const std::vector<Item>& items, Range range) {
   const std::uint32_t differing = items[range.begin].code ^ items[range.end - 1].code;
   if (differing == 0) return range.begin + range.size() / 2;
@@ -87,12 +87,12 @@ std::uint32_t splitOf(const std::vector<Item>& items, Range range) {
 struct Leaf {
   Range items;
   std::uint32_t first_packet;
-  std::uint32_t quad;
+  std::uint32_t node;
   int lane;
 };
 
-// Quads with links, without moments; a parent comes before its children.
-std::vector<Leaf> divide(const std::vector<Item>& items, std::vector<Quad>& quads,
+// Makes nodes with links but without moments; a parent comes before its children.
+std::vector<Leaf> divide(const std::vector<Item>& items, std::vector<ClusterNode4>& nodes,
                          std::size_t& packets) {
   std::vector<Leaf> leaves;
   std::vector<Range> of_quad{{0, static_cast<std::uint32_t>(items.size())}};
@@ -108,19 +108,19 @@ std::vector<Leaf> divide(const std::vector<Item>& items, std::vector<Quad>& quad
       parts[count] = {split, largest->end};
       largest->end = split;
     }
-    Quad& quad = quads.emplace_back();
+    ClusterNode4& node = nodes.emplace_back();
     for (std::size_t lane = 0; lane < 4; ++lane) {
-      quad.children[lane] = -1;
-      quad.first_packet[lane] = static_cast<std::uint32_t>(packets);
-      quad.packet_count[lane] = 0;
+      node.children[lane] = -1;
+      node.first_packet[lane] = static_cast<std::uint32_t>(packets);
+      node.packet_count[lane] = 0;
       if (parts[lane].size() > kLeafTriangles) {
-        quad.children[lane] = static_cast<std::int32_t>(of_quad.size());
+        node.children[lane] = static_cast<std::int32_t>(of_quad.size());
         of_quad.push_back(parts[lane]);
       } else if (parts[lane].size() > 0) {
-        leaves.push_back({parts[lane], quad.first_packet[lane], static_cast<std::uint32_t>(q),
+        leaves.push_back({parts[lane], node.first_packet[lane], static_cast<std::uint32_t>(q),
                           static_cast<int>(lane)});
-        quad.packet_count[lane] = (parts[lane].size() + 3) / 4;
-        packets += quad.packet_count[lane];
+        node.packet_count[lane] = (parts[lane].size() + 3) / 4;
+        packets += node.packet_count[lane];
       }
     }
   }
@@ -153,7 +153,7 @@ void pack(const TriangleMesh& mesh, const LocalVertices& vertices, const std::ve
   }
 }
 
-// Of the triangles with finite corners: one that has none must not set the scale.
+// Ignores triangles with a non-finite corner, which must not determine the scale.
 Box3 finiteBounds(const TriangleMesh& mesh) {
   Box3 box;
   for (const Triangle& t : mesh.triangles) {
@@ -184,20 +184,20 @@ Tree build(const TriangleMesh& mesh, double accuracy) {
   const std::vector<Item> items = withoutCoincident(mesh, sortedItems(mesh, vertices));
   if (items.empty()) return tree;
   std::size_t packets = 0;
-  const std::vector<Leaf> leaves = divide(items, tree.quads, packets);
+  const std::vector<Leaf> leaves = divide(items, tree.nodes, packets);
   tree.packets.resize(packets);
-  std::vector<std::array<Moments, 4>> clusters(tree.quads.size());
+  std::vector<std::array<Moments, 4>> clusters(tree.nodes.size());
   parallel(leaves.size(), [&](std::size_t i) {
     const Leaf& leaf = leaves[i];
     pack(mesh, vertices, items, leaf, &tree.packets[leaf.first_packet]);
-    clusters[leaf.quad][static_cast<std::size_t>(leaf.lane)] =
+    clusters[leaf.node][static_cast<std::size_t>(leaf.lane)] =
         leafMoments(&tree.packets[leaf.first_packet], (leaf.items.size() + 3) / 4);
   });
-  for (std::size_t q = tree.quads.size(); q-- > 0;) {
+  for (std::size_t q = tree.nodes.size(); q-- > 0;) {
     for (std::size_t lane = 0; lane < 4; ++lane) {
-      const std::int32_t child = tree.quads[q].children[lane];
+      const std::int32_t child = tree.nodes[q].children[lane];
       if (child >= 0) clusters[q][lane] = parentOf(clusters[static_cast<std::size_t>(child)]);
-      store(clusters[q][lane], static_cast<float>(accuracy), tree.quads[q], static_cast<int>(lane));
+      store(clusters[q][lane], static_cast<float>(accuracy), tree.nodes[q], static_cast<int>(lane));
     }
   }
   return tree;

@@ -1,4 +1,4 @@
-// Which triangles of a mesh coincide exactly, and what is left of them.
+// Finds exactly coincident triangles and drops the redundant ones.
 #include <algorithm>
 #include <bit>
 #include <numeric>
@@ -14,7 +14,7 @@ bool before(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-// Corner positions in a fixed order, and whether that order is an odd permutation of the mesh's.
+// Sorted corner positions; odd: the order is an odd permutation of the mesh's.
 struct Corners {
   std::array<Vec3, 3> at;
   bool odd = false;
@@ -36,7 +36,7 @@ struct PositionHash {
   std::size_t operator()(const Vec3& p) const {
     std::uint64_t h = 0;
     for (int i = 0; i < 3; ++i) {
-      // + 0.0 makes one zero of two.
+      // + 0.0 turns -0 into 0.
       h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 0x9e3779b97f4a7c15ULL;
       h ^= h >> 32;
     }
@@ -80,7 +80,7 @@ class Parts {
 
 std::vector<Item> withoutCoincident(const TriangleMesh& mesh, std::vector<Item> items) {
   std::size_t kept = 0;
-  std::vector<std::size_t> cancelled; // places among the kept
+  std::vector<std::size_t> cancelled; // indices among the kept
   std::vector<std::pair<Corners, std::uint32_t>> run;
   for (std::size_t begin = 0; begin < items.size();) {
     const std::uint32_t code = items[begin].code;
@@ -95,14 +95,14 @@ std::vector<Item> withoutCoincident(const TriangleMesh& mesh, std::vector<Item> 
       const std::uint32_t triangle = items[begin].triangle;
       run.emplace_back(Corners(mesh, triangle), triangle);
     }
-    // Coincident triangles become neighbours, the lowest index first.
+    // Sorting makes coincident triangles neighbours, the lowest index first.
     std::sort(run.begin(), run.end(), [](const auto& a, const auto& b) {
       for (std::size_t k = 0; k < 3; ++k)
         if (a.first.at[k] != b.first.at[k]) return before(a.first.at[k], b.first.at[k]);
       return a.second < b.second;
     });
     for (std::size_t i = 0; i < run.size();) {
-      int net = 0; // those facing as the first does less those facing the other way
+      int net = 0; // triangles facing as the first does minus the others
       std::size_t j = i;
       for (; j < run.size() && run[j].first.at == run[i].first.at; ++j)
         net += run[j].first.odd == run[i].first.odd ? 1 : -1;

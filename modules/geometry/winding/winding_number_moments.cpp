@@ -1,4 +1,4 @@
-// Moments of clusters, from triangles and from smaller clusters.
+// Moments of clusters, computed from triangles and from smaller clusters.
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +43,7 @@ Moments leafMoments(const Packet* packets, std::size_t count) {
   std::array<Float4, 6> m{};
   std::array<Float4, 10> s{};
   Float4 radius_squared{};
-  std::array<Float4, 3> low{}, high{}; // about the centre, which lies in the box
+  std::array<Float4, 3> low{}, high{}; // relative to the centre, which lies in the box
   for (std::size_t i = 0; i < count; ++i) {
     const Packet& p = packets[i];
     std::array<Float4, 3> a, b, c, g;
@@ -168,35 +168,35 @@ Moments parentOf(const std::array<Moments, 4>& children) {
   return parent;
 }
 
-// The coefficients that Quad describes, into one lane.
-void store(const Moments& cluster, float accuracy, Quad& quad, int l) {
-  if (cluster.radius < 0) { // far from everywhere, adding nothing
-    for (auto& coordinate : quad.centre) coordinate[l] = 1e3F;
-    quad.far_squared[l] = -1;
+// Stores the coefficients of ClusterNode4 in one lane.
+void store(const Moments& cluster, float accuracy, ClusterNode4& node, int l) {
+  if (cluster.radius < 0) { // far from everywhere and without effect
+    for (auto& coordinate : node.centre) coordinate[l] = 1e3F;
+    node.far_squared[l] = -1;
     return;
   }
-  for (std::size_t k = 0; k < 3; ++k) quad.centre[k][l] = cluster.centre[k];
-  for (std::size_t k = 0; k < 3; ++k) quad.dipole[k][l] = cluster.n[k];
+  for (std::size_t k = 0; k < 3; ++k) node.centre[k][l] = cluster.centre[k];
+  for (std::size_t k = 0; k < 3; ++k) node.dipole[k][l] = cluster.n[k];
   const float far = accuracy * cluster.radius;
-  quad.far_squared[l] = far * far;
+  node.far_squared[l] = far * far;
   const auto& m = cluster.m;
   const auto& s = cluster.s;
   const float trace = (m[0] + m[1] + m[2]) / 3;
-  for (std::size_t k = 0; k < 3; ++k) quad.second[k][l] = -3 * (m[k] - trace);
-  for (std::size_t k = 3; k < 6; ++k) quad.second[k][l] = -6 * m[k];
+  for (std::size_t k = 0; k < 3; ++k) node.second[k][l] = -3 * (m[k] - trace);
+  for (std::size_t k = 3; k < 6; ++k) node.second[k][l] = -6 * m[k];
   const float tx = (s[0] + s[5] + s[7]) / 5;
   const float ty = (s[1] + s[3] + s[8]) / 5;
   const float tz = (s[2] + s[4] + s[6]) / 5;
-  quad.third[0][l] = 7.5F * (s[0] - 3 * tx);
-  quad.third[1][l] = 7.5F * (s[1] - 3 * ty);
-  quad.third[2][l] = 7.5F * (s[2] - 3 * tz);
-  quad.third[3][l] = 22.5F * (s[3] - ty);
-  quad.third[4][l] = 22.5F * (s[4] - tz);
-  quad.third[5][l] = 22.5F * (s[5] - tx);
-  quad.third[6][l] = 22.5F * (s[6] - tz);
-  quad.third[7][l] = 22.5F * (s[7] - tx);
-  quad.third[8][l] = 22.5F * (s[8] - ty);
-  quad.third[9][l] = 45.0F * s[9];
+  node.third[0][l] = 7.5F * (s[0] - 3 * tx);
+  node.third[1][l] = 7.5F * (s[1] - 3 * ty);
+  node.third[2][l] = 7.5F * (s[2] - 3 * tz);
+  node.third[3][l] = 22.5F * (s[3] - ty);
+  node.third[4][l] = 22.5F * (s[4] - tz);
+  node.third[5][l] = 22.5F * (s[5] - tx);
+  node.third[6][l] = 22.5F * (s[6] - tz);
+  node.third[7][l] = 22.5F * (s[7] - tx);
+  node.third[8][l] = 22.5F * (s[8] - ty);
+  node.third[9][l] = 45.0F * s[9];
 }
 
 } // namespace patina::winding

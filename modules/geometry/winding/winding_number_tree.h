@@ -1,4 +1,4 @@
-// The cluster hierarchy behind WindingNumber: private to winding_number*.cpp.
+// Cluster hierarchy of WindingNumber (Barill et al. 2018). Internal to winding_number*.cpp.
 #pragma once
 
 #include <array>
@@ -14,23 +14,22 @@ using Mask4 = std::int32_t __attribute__((vector_size(16)));
 
 inline constexpr std::size_t kLeafTriangles = 16; // at most
 
-// Four triangles, one a lane. Absent ones have three equal corners and so no solid angle.
+// Four triangles, one a lane. Empty lanes have three equal corners and thus no solid angle.
 struct Packet {
   std::array<Float4, 3> a, b, c;
 };
 
 // Four sibling clusters, one a lane. With r = centre - q and rho = |r| a cluster's solid angle is
 //   [ dipole.r + second(r,r) / rho^2 + third(r,r,r) / rho^4 ] / rho^3,
-// the Taylor expansion of (x - q).n / |x - q|^3 about its centre; the factors of the derivatives
-// of 1/rho and the removal of traces (they vanish, 1/rho being harmonic) are already in the
-// moments.
-struct Quad {
+// the Taylor expansion of (x - q).n / |x - q|^3 about its centre. The moments include the factors
+// of the derivatives of 1/rho, and no traces, which vanish because 1/rho is harmonic.
+struct ClusterNode4 {
   std::array<Float4, 3> centre;
-  Float4 far_squared; // beyond this squared distance the expansion holds; -1 in absent lanes
+  Float4 far_squared; // smallest valid squared distance; -1 in empty lanes
   std::array<Float4, 3> dipole;
   std::array<Float4, 6> second; // xx yy zz xy xz yz
   std::array<Float4, 10> third; // xxx yyy zzz xxy xxz yyx yyz zzx zzy xyz
-  // Quad of the children (always a later one), or -1 and then the cluster is a leaf of packets.
+  // ClusterNode4 of the children (always a later one), or -1 for a leaf, which has packets.
   std::array<std::int32_t, 4> children;
   std::array<std::uint32_t, 4> first_packet, packet_count;
 };
@@ -39,7 +38,7 @@ struct Tree {
   Vec3 origin = Vec3::Zero();
   double scale = 1; // tree coordinates = (p - origin) * scale, within a unit cube
   std::vector<Packet> packets;
-  std::vector<Quad> quads; // the first is the root; none if there is no triangle
+  std::vector<ClusterNode4> nodes; // the first is the root; none if there is no triangle
 };
 
 Tree build(const TriangleMesh& mesh, double accuracy);
@@ -47,25 +46,25 @@ Tree build(const TriangleMesh& mesh, double accuracy);
 // Symmetric parts of the integrals of n, n (x) d and n (x) d (x) d over a cluster, d = x - centre.
 struct Moments {
   std::array<float, 3> centre{};
-  float radius = -1; // of a ball about the centre that holds the cluster; -1 = no cluster
+  float radius = -1; // bounds the cluster about the centre; -1 = no cluster
   float area = 0;
   Eigen::Vector3f low = Eigen::Vector3f::Constant(2), high = Eigen::Vector3f::Constant(-2); // box
   std::array<float, 3> n{};
-  std::array<float, 6> m{};  // in the order of Quad::second
-  std::array<float, 10> s{}; // in the order of Quad::third
+  std::array<float, 6> m{};  // in the order of ClusterNode4::second
+  std::array<float, 10> s{}; // in the order of ClusterNode4::third
 };
 
 Moments leafMoments(const Packet* packets, std::size_t count); // count <= kLeafTriangles / 4
 Moments parentOf(const std::array<Moments, 4>& children);
-void store(const Moments& cluster, float accuracy, Quad& quad, int lane);
+void store(const Moments& cluster, float accuracy, ClusterNode4& node, int lane);
 
-// The triangles to sum, in Morton order.
+// Triangles to sum, in Morton order.
 struct Item {
   std::uint32_t code;
   std::uint32_t triangle : 31;
   std::uint32_t flip : 1;
 };
-// Drops coincident triangles as WindingNumber promises. items: every finite triangle, unflipped,
+// Drops coincident triangles as WindingNumber documents. items: every finite triangle, unflipped,
 // sorted by code and then by triangle; coincident triangles have equal codes.
 std::vector<Item> withoutCoincident(const TriangleMesh& mesh, std::vector<Item> items);
 

@@ -1,4 +1,4 @@
-// The record that one servo tick fills in.
+// Record that one servo tick fills in.
 #pragma once
 
 #include <array>
@@ -12,80 +12,78 @@
 
 namespace patina {
 
-// One tick. Each group is set by the stage that is named above it; a stage that comes later may
-// change what is said to be its own as well. "The contact stage" is ProxyStage, RayStage or the
-// plane's.
+// State of one tick. The comment above each group names the stage that sets it; later stages may
+// change it. "Contact stage" means ProxyStage, RayStage or the plane's.
 struct Contact {
   // tick()
   Vec3 tip = Vec3::Zero();      // [m], world
-  Vec3 velocity = Vec3::Zero(); // [m/s], backward difference; VelocityFilterStage: filtered
-  double dt = 0;                // [s], since the last finite tip
+  Vec3 velocity = Vec3::Zero(); // [m/s], backward difference, or filtered
+  double dt = 0;                // time since the last finite tip [s]
 
-  // tick(): the snapshot's base; MaterialStage: what is painted; TextureStiffnessStage, MagnetStage
+  // tick(): the snapshot's base; MaterialStage: painted values; TextureStiffnessStage, MagnetStage
   Material material;
-  // In the world; that of stiffness is 0 unless it is painted and the force conservative.
+  // World frame; stiffness: 0 unless it is painted and the force conservative.
   MaterialGradients gradients;
 
-  // The contact stage; relief and roughness lower it, down to no contact
+  // Contact stage; relief and roughness may end the contact.
   bool touching = false;
-  bool deep = false; // where contact is was found from inside, not by the way in
-  bool snap = false; // the contact point runs by itself: no friction, no work of the hand; also
-                     // LateralStage
-  // What stuck no longer does: a jump a tick ago (tick()), or an edit has moved the surface.
-  bool lets_go = false;
-  int samples = 0; // field evaluations (T-K06d); also OffsetStage
-  // What phi - iso at the tip is at least [voxels], out of contact; 0 in contact. Infinite: nobody
-  // has looked.
+  bool deep = false; // contact was found from inside, without an approach path
+  // True if the contact point moves without the tip, as past a medial axis; friction and the energy
+  // observer skip this tick. LateralStage also sets it.
+  bool snap = false;
+  // True if stiction must be released: a jump in the last tick (tick()), or an edit.
+  bool release_stick = false;
+  int samples = 0; // field evaluations (T-K06d); OffsetStage adds its own
+  // Lower bound of phi - iso at the tip [voxels]; 0 in contact, infinite if not evaluated.
   double clearance = std::numeric_limits<double>::infinity();
-  Vec3 drawn = Vec3::Zero();     // [m], of c since the last tick; 0 where contact begins
-  Vec3 normal = Vec3::Zero();    // unit, outward; zero if there is no direction (K05)
-  Vec3 candidate = Vec3::Zero(); // frictionless VCP c
-  double depth = 0;              // d = |c - x| [m]
-  // What holds c, the one that bears most first: c - x is the sum of load times normal, but where c
-  // was held back (snap): there the loads are those of a c that had arrived.
+  Vec3 displacement = Vec3::Zero(); // movement of c since the last tick [m]; 0 at first contact
+  Vec3 normal = Vec3::Zero();       // unit, outward; zero if undefined (K05)
+  Vec3 frictionless_point = Vec3::Zero(); // c: contact point (VCP) without friction
+  double depth = 0;                       // d = |c - x| [m]
+  // Walls that constrain c, by decreasing multiplier: c - x is the sum of multiplier times normal.
+  // If c is still on its way (snap), the multipliers are those of its destination.
   struct WallLoad {
     Vec3 normal = Vec3::Zero(); // unit, outward
-    double load = 0;            // [m]
+    double multiplier = 0;      // Lagrange multiplier [m]
   };
   std::array<WallLoad, 3> wall{};
   int walls = 0;
-  // The nearest point of the original surface: where contact is seen and where an edit acts.
-  // Differs from the candidate by the tip's radius and the offset (OffsetStage). The tip where
-  // nothing is near. MagnetStage where it pulls, as normal and vcp.
+  // Nearest point of the original surface, where the contact is displayed and edits apply. It
+  // differs from c by tip radius and offset (OffsetStage) and is the tip if nothing is near.
+  // MagnetStage sets surface, normal and vcp while it attracts.
   Vec3 surface = Vec3::Zero();
-  Vec3 vcp = Vec3::Zero(); // p, after FrictionStage; the tip if not touching
+  Vec3 vcp = Vec3::Zero(); // p, after FrictionStage; the tip without contact
 
-  // How surface moves with the tip: ProxyStage where one wall holds it, else pulledBack() for
-  // whichever stage asks first
+  // Derivative of `surface` with respect to the tip. ProxyStage sets it for a single wall;
+  // otherwise pulledBack() computes it on first use.
   std::optional<SurfaceJacobian> jacobian;
 
   // OwnerStage
-  std::int32_t object = 0; // that surface belongs to, where that matters
+  std::int32_t object = 0; // object that `surface` belongs to, if the stages need it
 
   // LateralStage
-  Vec3 aside = Vec3::Zero(); // [m], over the surface: relief and roughness are read at
-                             // surface + aside
-  double lateral = 0;        // [N/m], of the spring that ties it so; 0 = none, aside is 0
+  Vec3 lateral_offset = Vec3::Zero(); // tangential offset of the texture lookup [m]: relief and
+                                      // roughness are evaluated at surface + lateral_offset
+  double lateral_stiffness = 0;       // tangential spring [N/m]; 0: none, offset 0
 
   // ReliefStage and RoughnessStage
-  Vec3 slope = Vec3::Zero(); // normal is along n - slope
-  double relief_step = 0;    // [m], by which relief moved the VCP this tick, at most
+  Vec3 slope = Vec3::Zero(); // `normal` is parallel to n - slope
+  double relief_jump = 0;    // bound of the VCP's movement by relief in this tick [m]
 
   // FrictionStage
-  double stick_radius = 0; // [m], how far p may be from c while it sticks; 0 = it does not
-  double slip_step = 0;    // [m], how far the VCP let go this tick by a rule of its own; also
-                           // RayStage
+  double stick_radius = 0; // largest distance of p from c while sticking [m]; 0: slipping
+  double slip_jump = 0;    // sudden release of the VCP in this tick [m]; also of RayStage's snap
 
   // MagnetStage
-  bool attracted = false; // out of contact, pulled
-  double attraction = 0;  // 1 where it pulls, less where its band fades out
+  bool attracted = false; // attracted without contact
+  double attraction = 0;  // 1 inside the magnet's range, less where it fades out
 
   // SpringStage or CouplingStage
-  double stiffness = 0; // K at the contact [N/m]; of the whole law, where a coupling softens it
-  // Spring, magnet, coupling, damping, stiffness slope, passivity and limit, one upon another
-  Vec3 force = Vec3::Zero(); // on the hand [N]
-  // Magnet, stiffness slope and passivity
-  double known_step = 0; // [N], a step of the force that the model itself makes this tick
+  double stiffness = 0; // stiffness at the contact, with a coupling in series [N/m]
+  // The stages add to it: spring, magnet, coupling, damping, stiffness gradient, passivity, limit.
+  Vec3 force = Vec3::Zero(); // force on the hand [N]
+  // Magnet, stiffness gradient and passivity
+  double expected_force_jump = 0; // force jump of the model itself in this tick [N]
 
   // LimitStage
   bool fault = false;

@@ -7,10 +7,10 @@ namespace patina {
 namespace {
 
 constexpr double kFeasible = 1e-9;               // voxels
-constexpr double kParallel = 1e-9, kFlat = 1e-6; // determinants of pairs and of triples
-constexpr int kMost = Walls::kMost;
+constexpr double kParallel = 1e-9, kFlat = 1e-6; // smallest determinants of pairs and of triples
+constexpr int kMaxWalls = Walls::kMax;
 
-// All that is needed of the walls about one x: how far each is violated there, and their angles.
+// Enumerates the active sets for one x; stores the violation of each wall at x and the Gram matrix.
 class Search {
  public:
   Search(const Walls& walls, const Vec3& x) noexcept : count_(walls.count) {
@@ -21,7 +21,7 @@ class Search {
     }
   }
 
-  // The answer is the one set of walls whose loads push and leave no wall violated.
+  // The solution is the active set with multipliers >= 0 that leaves no wall violated (KKT).
   void run() noexcept {
     if (offer<0>({}, {}) || singles() || pairs()) return;
     triples();
@@ -29,7 +29,7 @@ class Search {
   const WallProjection& best() const noexcept { return best_; }
 
  private:
-  // True if these active walls are the answer.
+  // Keeps the least violating active set; returns true if it is the solution.
   template <int kActive>
   bool offer(const std::array<int, 3>& active, const std::array<double, 3>& load) noexcept {
     double worst = 0;
@@ -42,7 +42,7 @@ class Search {
     if (worst < least_) {
       least_ = worst;
       best_.active = active;
-      best_.load = load;
+      best_.multiplier = load;
       best_.count = kActive;
     }
     return worst <= kFeasible;
@@ -74,7 +74,7 @@ class Search {
           const double p = (1 - a * a) * u + (a * b - c) * v + (a * c - b) * w,
                        q = (a * b - c) * u + (1 - b * b) * v + (b * c - a) * w,
                        r = (a * c - b) * u + (b * c - a) * v + (1 - c * c) * w;
-          // The square of the volume that the three normals span.
+          // Squared volume that the three normals span.
           const double det = 1 + 2 * a * b * c - a * a - b * b - c * c;
           if (!(p >= 0 && q >= 0 && r >= 0) || det < kFlat * kFlat) continue;
           if (offer<3>({i, j, k}, {p / det, q / det, r / det})) return;
@@ -82,7 +82,7 @@ class Search {
   }
 
   int count_;
-  double violated_[kMost], gram_[kMost][kMost];
+  double violated_[kMaxWalls], gram_[kMaxWalls][kMaxWalls];
   WallProjection best_;
   double least_ = std::numeric_limits<double>::infinity();
 };
@@ -95,11 +95,11 @@ void Walls::remove(int index) noexcept {
 }
 
 void Walls::add(const WallPlane& newest) noexcept {
-  if (count == kMost) {
+  if (count == kMax) {
     int farthest = 0;
     double most = -1;
     for (int i = 0; i < count; ++i) {
-      const double squared = ((*this)[i].seen - newest.seen).squaredNorm();
+      const double squared = ((*this)[i].point - newest.point).squaredNorm();
       if (squared <= most) continue;
       most = squared;
       farthest = i;
@@ -116,7 +116,7 @@ WallProjection projectOntoWalls(const Walls& walls, const Vec3& x) noexcept {
     const double violated = -walls[0].height(x);
     if (violated <= kFeasible) return result;
     result.z += violated * walls[0].normal;
-    result.load[0] = violated;
+    result.multiplier[0] = violated;
     result.count = 1;
     return result;
   }
@@ -125,7 +125,7 @@ WallProjection projectOntoWalls(const Walls& walls, const Vec3& x) noexcept {
   result = search.best();
   result.z = x;
   for (int k = 0; k < result.count; ++k)
-    result.z += result.load[static_cast<std::size_t>(k)] *
+    result.z += result.multiplier[static_cast<std::size_t>(k)] *
                 walls[result.active[static_cast<std::size_t>(k)]].normal;
   return result;
 }

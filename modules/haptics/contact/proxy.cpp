@@ -6,93 +6,93 @@
 namespace patina {
 namespace {
 
-// Lengths in voxels, cosines, and slopes of phi, which is about 1.
+// Lengths in voxels; cosines; slopes are |grad phi|, about 1.
 constexpr double kOnSurface = 1e-5, kHeld = 1e-4;
-constexpr double kAtRest = 3e-3;      // a step that is the last one
-constexpr double kRestError = 3e-4;   // what a step may leave undone where the surface is smooth
-constexpr double kTurnedError = 2e-3; // and before the turn of the surface is taken out of it
-constexpr double kCreaseError = 5e-3; // the same where there may be several walls
-constexpr double kLastError = 0.03;   // of the last look where the surface is smooth
-constexpr double kCreaseStep = 0.03; // a step that is the last one where there may be several walls
-constexpr double kMostRate = 0.8;    // of a step, that the next one takes
-constexpr double kLeastRate = 0.06;  // below it a look at the wall as it was finds it as well
-constexpr double kLeastWay = 1e-4;   // below it the turn of a normal is rounding
-constexpr double kLongWay = 1e-2;    // from where on it tells how the wall will turn
-constexpr double kMostStep = 0.1;
-constexpr double kDeep = 0.35; // a look from deeper inside says nothing of the wall in front
-constexpr double kFlat = 0.2, kLeastSlope = 0.3;
-constexpr double kMostTrust = 2;
-constexpr double kTrust = 1; // how far a wall is believed from where the VCP is feasible
+constexpr double kFinalStep = 3e-3;         // a shorter step is the last one
+constexpr double kResidualTolerance = 3e-4; // error left after a step on a smooth surface
+constexpr double kTurnedError = 2e-3;       // the same before the correction by the normal rate
+constexpr double kCreaseError = 5e-3;       // the same if there may be several walls
+constexpr double kLastError = 0.03;         // the same at the last evaluation on a smooth surface
+constexpr double kCreaseStep = 0.03;        // last step if there may be several walls
+constexpr double kMaxRate = 0.8;            // largest ratio of successive steps
+constexpr double kMinRate = 0.06;           // below it the evaluation needs no prediction
+constexpr double kMinPath = 1e-4;           // below it the normal's change is rounding
+constexpr double kMinRatePath = 1e-2;       // shortest path for a reliable normal rate
+constexpr double kMaxStep = 0.1;
+constexpr double kDeep = 0.35; // deeper evaluations say nothing about the wall in front
+constexpr double kFlat = 0.2, kMinSlope = 0.3;
+constexpr double kMaxValidityRadius = 2;
+constexpr double kValidityRadius = 1; // validity radius of a wall around a feasible VCP
 constexpr double kSameWall = 0.97;
-constexpr double kTurnOfAWall = 0.06; // squared, of normals with that cosine
-constexpr double kRefuted = 0.02;
-constexpr double kStale = 0.3; // an active wall seen farther away is looked at again
-constexpr double kStaleTrust = 0.25;
-constexpr double kForget = 2;
-constexpr double kForgetLent = 100; // voxels of way, over which what moves gave is forgotten
-constexpr double kLent = 4e-3;      // voxel^2, from where on it is taken back
-constexpr double kRoom = 1 + 1e-6;  // of the square of a bound, for rounding
+constexpr double kMaxNormalChange = 0.06; // squared difference of normals with that cosine
+constexpr double kViolated = 0.02;
+constexpr double kRelinearize = 0.3; // an active wall linearised farther away is evaluated again
+constexpr double kStaleValidity = 0.25;
+constexpr double kDropDistance = 2;
+constexpr double kEnergyMemory = 100;        // path over which generated energy decays [voxel]
+constexpr double kMaxGeneratedEnergy = 4e-3; // energy from which it is dissipated [voxel^2]
+constexpr double kRoundingMargin = 1 + 1e-6; // rounding margin of a squared bound
 constexpr double kAlwaysSpread = 1e-12;
-constexpr int kMostSlides = 3, kFewLooks = 3, kMostLooks = 8, kMostSecants = 4, kMostHalvings = 6;
+constexpr int kMaxSlides = 3, kMinEvaluations = 3, kMaxEvaluations = 8, kMaxSecants = 4,
+              kMaxHalvings = 6;
 
 } // namespace
 
-struct ProxySearch::Seen {
+struct ProxySearch::FieldEvaluation {
   double height = 0; // phi - iso
   double slope = 0;
   Vec3 normal = Vec3::Zero();
   bool smooth = false; // no crease here
-  bool known = false;  // in the band
-  BandCell cell{};     // if known and curved_
+  bool known = false;  // inside the band
+  BandCell cell{};     // set if known and curved_
 };
 
-// What the quick way has seen before it gave up.
-struct ProxySearch::Tried {
-  std::optional<Seen> first; // at the projection onto the wall, if there alone
-  bool elsewhere = false;    // it has looked where c would be instead
+// Evaluations of the fast path before it gave up.
+struct ProxySearch::FastPathResult {
+  std::optional<FieldEvaluation> first; // at the projection onto the wall
+  bool ahead = false;                   // evaluated ahead, at the predicted c
   bool crease = false;
 };
 
-struct ProxySearch::Aim {
+struct ProxySearch::Target {
   WallProjection to;
-  bool by_ball = false, by_trust = false;
+  bool by_step = false, by_validity = false;
 };
 
-ProxySearch::Seen ProxySearch::look(const Vec3& q, double own) const noexcept {
+ProxySearch::FieldEvaluation ProxySearch::evaluate(const Vec3& q, double own) const noexcept {
   if (sampler_->sampler() != Sampler::high) own = 0;
-  // With relief baked in gradients are not of length 1, and a blend's length tells no crease.
-  if (per_steepness_ < 1) own = std::max(own, kAlwaysSpread);
-  Seen seen;
+  // Baked relief: gradients are not of unit length, and a blended one does not reveal a crease.
+  if (per_lipschitz_ < 1) own = std::max(own, kAlwaysSpread);
+  FieldEvaluation seen;
   const SurfaceSample sample = sampler_->surfaceAtGrid(q, own, curved_ ? &seen.cell : nullptr);
   seen.height = sample.phi - iso_;
   seen.known = sample.region == FieldRegion::band;
   seen.slope = sample.gradient.norm();
   if (seen.slope > 0) seen.normal = 1 / seen.slope * sample.gradient;
-  seen.smooth = sample.spread == 0;
+  seen.smooth = sample.normal_dispersion == 0;
   return seen;
 }
 
 namespace {
 
-// On a smooth surface blended normals are the more exact ones, but not those of the level set, so
-// that a move of c may give work: the mean depth times how far it went along the mean normal, which
-// is nothing on an exact surface. What it gave of late turns the normals to the level set's own:
-// over faces gains and losses follow one another, and their sum would wander there by chance.
-void lend(Proxy& proxy, double given, const Vec3& moved) noexcept {
-  const double kept = std::max(0.0, 1 - moved.norm() / kForgetLent);
-  proxy.lent = std::max(0.0, kept * proxy.lent + given);
+// Accumulates energy that a move of c generates: mean depth times move along the mean normal, zero
+// on an exact surface. Blended normals are accurate, but not the gradient of one level set; if the
+// energy exceeds a limit, correctionWeight() blends in the exact gradient. Not for facets, whose
+// gains and losses alternate and would sum to a random walk.
+void addGeneratedEnergy(Proxy& proxy, double given, const Vec3& moved) noexcept {
+  const double kept = std::max(0.0, 1 - moved.norm() / kEnergyMemory);
+  proxy.generated_energy = std::max(0.0, kept * proxy.generated_energy + given);
 }
-double ownShare(const Proxy& proxy) noexcept {
-  return std::clamp((proxy.lent - kLent) / kLent, 0.0, 1.0);
+double correctionWeight(const Proxy& proxy) noexcept {
+  return std::clamp((proxy.generated_energy - kMaxGeneratedEnergy) / kMaxGeneratedEnergy, 0.0, 1.0);
 }
 
-// A bounded move is the projection of a point nearer to the middle: cutting the way short instead
-// would leave the walls. A few secants find the point; where they do not, halving does, between it
-// and a point on the ball: a projection makes no distance longer, so that where the middle is
-// itself free of the walls it stays within.
+// Bounds a move by projecting a point closer to `middle`; cutting the path short would leave the
+// walls. A few secant steps find the point, else bisection between it and a point on the sphere.
+// The projection increases no distance, so a free `middle` gives a result within the radius.
 void shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target,
              WallProjection& to) noexcept {
-  const double most = kRoom * radius * radius;
+  const double most = kRoundingMargin * radius * radius;
   const Vec3 whole = target - middle;
   double inside = std::min(1.0, radius / whole.norm()), outside = 1;
   const auto go = [&](double share) {
@@ -101,20 +101,20 @@ void shorten(const Walls& walls, const Vec3& middle, double radius, Vec3& target
     return (to.z - middle).squaredNorm();
   };
   double squared = (to.z - middle).squaredNorm();
-  for (int k = 0; k < kMostSecants && squared > most; ++k) {
+  for (int k = 0; k < kMaxSecants && squared > most; ++k) {
     outside *= radius / std::sqrt(squared);
     squared = go(outside);
   }
   if (squared <= most) return;
-  for (int k = 0; k < kMostHalvings; ++k) {
+  for (int k = 0; k < kMaxHalvings; ++k) {
     const double share = 0.5 * (inside + outside);
     (go(share) > most ? outside : inside) = share;
   }
   go(inside);
 }
 
-// Drops or mends what a look at z refutes (P08). Of a convex obstacle a wall seen elsewhere claims
-// too much; of a concave one it stays true.
+// Drops or corrects walls that an evaluation at z contradicts (P08). A wall linearised ahead is
+// too strict on a convex obstacle and stays valid on a concave one.
 void reviewWalls(Walls& walls, const Vec3& z, double height, const Vec3& normal,
                  bool smooth) noexcept {
   for (int i = walls.count - 1; i >= 0; --i) {
@@ -123,111 +123,113 @@ void reviewWalls(Walls& walls, const Vec3& z, double height, const Vec3& normal,
     const bool same = wall.normal.dot(normal) > kSameWall;
     bool drop = false;
     if (excess < -kOnSurface) {
-      drop = excess < -kRefuted || same;
+      drop = excess < -kViolated || same;
       if (!drop) wall.offset += excess;
     } else if (same) {
       const double turn = (wall.normal - normal).norm();
-      drop = smooth || turn < 1e-5 || excess < 0.2 * turn * (wall.seen - z).norm();
+      drop = smooth || turn < 1e-5 || excess < 0.2 * turn * (wall.point - z).norm();
     }
     if (drop) walls.remove(i);
   }
 }
 
-// The active wall that was seen too far from z to be believed there, or -1.
-int stalest(const Walls& walls, const WallProjection& held, const Vec3& z) noexcept {
+// Returns an active wall that was linearised too far from z, or -1.
+int mostStale(const Walls& walls, const WallProjection& held, const Vec3& z) noexcept {
   int stale = -1;
   for (int k = 0; k < held.count; ++k) {
     const int i = held.active[static_cast<std::size_t>(k)];
-    if ((walls[i].seen - z).squaredNorm() > kStale * kStale) stale = i;
+    if ((walls[i].point - z).squaredNorm() > kRelinearize * kRelinearize) stale = i;
   }
   return stale;
 }
 
 } // namespace
 
-WallPlane ProxySearch::wallAt(const Vec3& z, const Seen& seen) noexcept {
-  return {seen.normal, seen.normal.dot(z) - seen.height / std::max(seen.slope, kLeastSlope), z};
+WallPlane ProxySearch::wallAt(const Vec3& z, const FieldEvaluation& seen) noexcept {
+  return {seen.normal, seen.normal.dot(z) - seen.height / std::max(seen.slope, kMinSlope), z};
 }
 
-ProxySearch::Aim ProxySearch::aimAt(const Vec3& x, const Walls& walls, const Vec3& start,
-                                    double ball, const Vec3& anchor, double trust) const noexcept {
-  Aim aim;
+ProxySearch::Target ProxySearch::solveTarget(const Vec3& x, const Walls& walls, const Vec3& start,
+                                             double step_radius, const Vec3& anchor,
+                                             double validity_radius) const noexcept {
+  Target aim;
   Vec3 target = x;
   aim.to = projectOntoWalls(walls, target);
   const auto leaves = [&](const Vec3& middle, double radius) {
-    return (aim.to.z - middle).squaredNorm() > radius * radius * kRoom;
+    return (aim.to.z - middle).squaredNorm() > radius * radius * kRoundingMargin;
   };
-  aim.by_ball = leaves(start, ball);
-  if (aim.by_ball) shorten(walls, start, ball, target, aim.to);
-  aim.by_trust = leaves(anchor, trust);
-  if (aim.by_trust) {
-    shorten(walls, anchor, trust, target, aim.to);
-    if (leaves(start, ball)) shorten(walls, start, ball, target, aim.to);
+  aim.by_step = leaves(start, step_radius);
+  if (aim.by_step) shorten(walls, start, step_radius, target, aim.to);
+  aim.by_validity = leaves(anchor, validity_radius);
+  if (aim.by_validity) {
+    shorten(walls, anchor, validity_radius, target, aim.to);
+    if (leaves(start, step_radius)) shorten(walls, start, step_radius, target, aim.to);
   }
   return aim;
 }
 
-// The usual tick: one wall, nearly where it was predicted. False: nothing was changed but `tried`.
-//
-// One look after another would find of each step the share of it by which the surface turns under
-// the depth: a geometric series, whose sum is taken here along the way that was seen.
-bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& proxy, ProxyMove& move,
-                        Tried& tried) const noexcept {
+// Fast path of a usual tick: one wall, close to its prediction. Returns false with only `tried`
+// changed. Each evaluation would shrink the step by the normal's change times the depth, a
+// geometric series; its sum is extrapolated along the measured path.
+bool ProxySearch::slide(const Vec3& x, const Vec3& from, double step_radius, Proxy& proxy,
+                        ProxyMove& move, FastPathResult& tried) const noexcept {
   const WallPlane& before = proxy.walls[0];
   const Vec3& start = proxy.c;
-  const double most = std::min(ball, kTrust), own = ownShare(proxy);
+  const double most = std::min(step_radius, kValidityRadius), own = correctionWeight(proxy);
   const auto isNear = [&](const Vec3& p) { return (p - start).squaredNorm() < most * most; };
   WallPlane wall = before;
   double load = -wall.height(x);
   Vec3 c = x + load * wall.normal;
-  // The wall is looked at where c will be if it turns on as the last tick saw it turn.
-  if (const double rate = load * proxy.turn.per_voxel.dot(proxy.turn.along);
-      std::abs(rate) > kLeastRate) {
-    const double sum = 1 / (1 - std::min(rate, kMostRate));
-    const Vec3 ahead = c + load * sum * (c - start).dot(proxy.turn.along) * proxy.turn.per_voxel;
-    tried.elsewhere = isNear(ahead);
-    if (tried.elsewhere) c = ahead;
+  // Evaluates the wall at the predicted c, assuming the normal rate of the last tick.
+  if (const double rate = load * proxy.normal_rate.per_voxel.dot(proxy.normal_rate.along);
+      std::abs(rate) > kMinRate) {
+    const double sum = 1 / (1 - std::min(rate, kMaxRate));
+    const Vec3 ahead =
+        c + load * sum * (c - start).dot(proxy.normal_rate.along) * proxy.normal_rate.per_voxel;
+    tried.ahead = isNear(ahead);
+    if (tried.ahead) c = ahead;
   }
-  WallTurn seen_turn = proxy.turn;
+  NormalRate measured_rate = proxy.normal_rate;
   bool& crease = tried.crease;
-  for (int looks = 0; looks < kMostSlides; ++looks) {
+  for (int evaluations = 0; evaluations < kMaxSlides; ++evaluations) {
     if (!(load > kOnSurface && isNear(c))) return false;
     const Vec3 z = c;
-    const Seen seen = look(z, own);
+    const FieldEvaluation seen = evaluate(z, own);
     ++move.samples;
     crease = crease || !seen.smooth;
     tried.first.reset();
-    if (looks == 0 && !tried.elsewhere) tried.first = seen;
+    if (evaluations == 0 && !tried.ahead) tried.first = seen;
     const Vec3 turn = seen.normal - wall.normal;
     const double turned = turn.squaredNorm();
-    if (!seen.known || !(std::abs(seen.height) < kMostStep) || !(turned < kTurnOfAWall))
+    if (!seen.known || !(std::abs(seen.height) < kMaxStep) || !(turned < kMaxNormalChange))
       return false;
-    const Vec3 way = z - wall.seen;
-    const double per_square = 1 / std::max(way.squaredNorm(), kLeastWay * kLeastWay),
+    const Vec3 way = z - wall.point;
+    const double per_square = 1 / std::max(way.squaredNorm(), kMinPath * kMinPath),
                  curvature = per_square * turn.dot(way);
-    if (looks == 0 && per_square * kLongWay * kLongWay < 1) {
+    if (evaluations == 0 && per_square * kMinRatePath * kMinRatePath < 1) {
       const double per_way = std::sqrt(per_square);
-      seen_turn = {per_way * way, per_way * turn};
+      measured_rate = {per_way * way, per_way * turn};
     }
     wall = wallAt(z, seen);
-    WallPlane rest = wall; // seen at z: from a guessed normal facets would turn twice
+    WallPlane rest =
+        wall; // linearised at z: a predicted normal would count the facets' rotation twice
     load = -wall.height(x);
     c = x + load * wall.normal;
-    // Here, and not when a stage asks: while c is worked out there is time.
+    // Computed here, where its latency is hidden, and not on a stage's request.
     if (curved_) move.jacobian.emplace(seen.cell, seen.normal, load, iso_);
     const Vec3 step = c - z;
     const double step_squared = step.squaredNorm();
-    bool last = step_squared < kRestError * kRestError;
+    bool last = step_squared < kResidualTolerance * kResidualTolerance;
     if (!last) {
       const double share = load * load * turned * per_square,
-                   sum = 1 / (1 - std::min(load * curvature, kMostRate)),
+                   sum = 1 / (1 - std::min(load * curvature, kMaxRate)),
                    left = sum * sum * share * step_squared;
       const bool settles = share < 1;
-      const double most_left = crease                    ? kCreaseError
-                               : looks + 1 < kMostSlides ? kTurnedError
-                                                         : kLastError;
-      last = settles && step_squared < kMostStep * kMostStep && left < most_left * most_left;
-      if (settles && left > kRestError * kRestError) {
+      const double most_left = crease                         ? kCreaseError
+                               : evaluations + 1 < kMaxSlides ? kTurnedError
+                                                              : kLastError;
+      last = settles && step_squared < kMaxStep * kMaxStep && left < most_left * most_left;
+      if (settles && left > kResidualTolerance * kResidualTolerance) {
         WallPlane guess = wall;
         guess.normal = (wall.normal + sum * step.dot(way) * per_square * turn).normalized();
         guess.offset = guess.normal.dot(c);
@@ -243,51 +245,53 @@ bool ProxySearch::slide(const Vec3& x, const Vec3& from, double ball, Proxy& pro
       }
     }
     if (!last) continue;
-    // Beside a crease another look may be another wall's, and no move of c makes it longer (P11).
+    // Next to a crease another wall may be met, and |c - x| may not increase (P11).
     if (crease && !(load * load <= (start - x).squaredNorm())) return false;
-    if (!(load > kOnSurface && (c - start).squaredNorm() < ball * ball)) return false;
+    if (!(load > kOnSurface && (c - start).squaredNorm() < step_radius * step_radius)) return false;
     if (!crease)
-      lend(proxy,
-           0.25 * (before.normal.dot(start - from) + load) *
-               (before.normal + rest.normal).dot(c - start),
-           c - start);
+      addGeneratedEnergy(proxy,
+                         0.25 * (before.normal.dot(start - from) + load) *
+                             (before.normal + rest.normal).dot(c - start),
+                         c - start);
     proxy.c = c;
     proxy.walls[0] = rest;
-    proxy.turn = seen_turn;
+    proxy.normal_rate = measured_rate;
     move.touching = move.smooth = true;
-    move.held.load[0] = load;
+    move.held.multiplier[0] = load;
     return true;
   }
   return false;
 }
 
-ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
+ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double step_radius,
                               Proxy& proxy) const noexcept {
   ProxyMove move;
-  Tried tried;
-  if (proxy.walls.count == 1 && slide(x, from, ball, proxy, move, tried)) return move;
+  FastPathResult tried;
+  if (proxy.walls.count == 1 && slide(x, from, step_radius, proxy, move, tried)) return move;
   move.jacobian.reset();
-  proxy.turn = {};
+  proxy.normal_rate = {};
   Walls& walls = proxy.walls;
   Vec3 start = proxy.c, anchor = proxy.c;
-  double anchor_height = 0, trust = kTrust;
+  double anchor_height = 0, validity_radius = kValidityRadius;
   if (walls.count == 0) {
-    const Seen seen = look(start);
+    const FieldEvaluation seen = evaluate(start);
     ++move.samples;
     anchor_height = std::max(seen.height, 0.0);
     if (seen.slope > kFlat) walls.add(wallAt(start, seen));
   }
 
-  // Walls of blended normals meet nowhere on the surface: with several, each has the derivative.
+  // Blended normals of several walls do not meet on the surface, so they use exact gradients.
   bool may_end = true, converged = false, smooth = false, crease = walls.count > 1 || tried.crease;
   Vec3 c = start;
-  Seen seen;
-  // One more for each voxel that c may have to go; what is left is the next tick's.
-  const int most_looks = std::min(kFewLooks + static_cast<int>(std::min(ball, 9.0)), kMostLooks);
-  Aim aim = aimAt(x, walls, start, ball, anchor, trust);
-  for (int looks = 0; looks < most_looks && !converged; ++looks) {
-    // Beyond every wall and near enough: contact has ended, unless there is another wall.
-    if (may_end && aim.to.count == 0 && !aim.by_ball) {
+  FieldEvaluation seen;
+  // One more evaluation for each voxel that c may have to move; the next tick continues.
+  const int max_evaluations =
+      std::min(kMinEvaluations + static_cast<int>(std::min(step_radius, 9.0)), kMaxEvaluations);
+  Target aim = solveTarget(x, walls, start, step_radius, anchor, validity_radius);
+  for (int evaluations = 0; evaluations < max_evaluations && !converged; ++evaluations) {
+    // The tip is outside every known wall and within the step radius: contact has ended unless
+    // another wall stands between.
+    if (may_end && aim.to.count == 0 && !aim.by_step) {
       const double at_x = heightAt(x);
       ++move.samples;
       if (at_x >= 0 && isFree(anchor, anchor_height, x, at_x, move.samples)) {
@@ -301,7 +305,7 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
       seen = *tried.first;
       tried.first.reset();
     } else {
-      seen = look(z, crease ? 1.0 : ownShare(proxy));
+      seen = evaluate(z, crease ? 1.0 : correctionWeight(proxy));
       ++move.samples;
     }
     crease = crease || !seen.smooth;
@@ -309,13 +313,13 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
     if (seen.height < -kDeep || (seen.slope < kFlat && seen.height < 0)) {
       const double share = std::clamp(anchor_height / (anchor_height - seen.height), 0.1, 0.5);
       aim.to.z = anchor + share * (z - anchor);
-      trust = (aim.to.z - anchor).norm();
-      if (trust < 1e-9) break;
+      validity_radius = (aim.to.z - anchor).norm();
+      if (validity_radius < 1e-9) break;
       continue;
     }
-    // Where walls meet on the surface itself another look could only take one of them away.
-    if (std::abs(seen.height) < kHeld && aim.to.count > 1 && !aim.by_ball && !aim.by_trust &&
-        stalest(walls, aim.to, z) < 0) {
+    // If walls meet on the surface itself, another evaluation could only remove one.
+    if (std::abs(seen.height) < kHeld && aim.to.count > 1 && !aim.by_step && !aim.by_validity &&
+        mostStale(walls, aim.to, z) < 0) {
       converged = true;
       break;
     }
@@ -323,42 +327,43 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
     const bool lone = walls.count == 1;
     if (lone) {
       turned = (walls[0].normal - seen.normal).norm();
-      since = (walls[0].seen - z).norm();
+      since = (walls[0].point - z).norm();
     }
     reviewWalls(walls, z, seen.height, seen.normal, !crease);
     if (seen.slope >= kFlat && seen.known) walls.add(wallAt(z, seen));
     if (seen.height >= -kOnSurface) {
       anchor = z;
       anchor_height = std::max(seen.height, 0.0);
-      trust =
-          std::max({std::min(kMostTrust, 2 * trust), kStaleTrust, per_steepness_ * seen.height});
+      validity_radius = std::max({std::min(kMaxValidityRadius, 2 * validity_radius), kStaleValidity,
+                                  per_lipschitz_ * seen.height});
     }
-    const Aim next = aimAt(x, walls, start, ball, anchor, trust);
+    const Target next = solveTarget(x, walls, start, step_radius, anchor, validity_radius);
     const double step = (next.to.z - z).norm();
-    const bool bounded = next.by_ball || next.by_trust;
-    if (next.to.count == 0 && next.by_ball && !next.by_trust && seen.height >= 0 &&
-        step < kAtRest) {
-      converged = true; // on its way through free space
-    } else if (!crease && walls.count == 1 && next.to.count == 1 && !bounded && step < kMostStep) {
-      // What the step leaves undone is the share of it by which the surface turns under the depth.
-      const double share = std::min(1.0, next.to.load[0] * turned / std::max(since, 1e-2));
-      if (step < kRestError || (lone && share * step < kRestError)) {
+    const bool bounded = next.by_step || next.by_validity;
+    if (next.to.count == 0 && next.by_step && !next.by_validity && seen.height >= 0 &&
+        step < kFinalStep) {
+      converged = true; // moves through free space
+    } else if (!crease && walls.count == 1 && next.to.count == 1 && !bounded && step < kMaxStep) {
+      // The error of the step is its length times the normal's change times the depth.
+      const double share = std::min(1.0, next.to.multiplier[0] * turned / std::max(since, 1e-2));
+      if (step < kResidualTolerance || (lone && share * step < kResidualTolerance)) {
         c = next.to.z;
         converged = smooth = true;
       }
-    } else if ((crease || looks > 0) && !next.by_trust && next.to.count > 0 &&
-               step < std::max(kCreaseStep, next.by_ball ? 0.3 * ball : 0) &&
-               std::abs(seen.height) < kMostStep) {
+    } else if ((crease || evaluations > 0) && !next.by_validity && next.to.count > 0 &&
+               step < std::max(kCreaseStep, next.by_step ? 0.3 * step_radius : 0) &&
+               std::abs(seen.height) < kMaxStep) {
       c = next.to.z;
       converged = true;
     } else if (std::abs(seen.height) < kHeld &&
-               step < (next.by_ball ? std::max(kAtRest, 0.3 * ball) : kAtRest) && !next.by_trust) {
-      const int stale = stalest(walls, next.to, z);
+               step < (next.by_step ? std::max(kFinalStep, 0.3 * step_radius) : kFinalStep) &&
+               !next.by_validity) {
+      const int stale = mostStale(walls, next.to, z);
       if (stale < 0) {
         converged = true;
       } else {
         walls.remove(stale);
-        aim = aimAt(x, walls, start, ball, anchor, trust);
+        aim = solveTarget(x, walls, start, step_radius, anchor, validity_radius);
         continue;
       }
     }
@@ -366,9 +371,9 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
   }
 
   if (!converged && seen.height < 0) {
-    // Out to the surface; farther in than a step of Newton's tells, back to where c was feasible.
-    c = seen.height > -kMostStep
-            ? Vec3(c - seen.height / std::max(seen.slope, kLeastSlope) * seen.normal)
+    // Corrects c by a Newton step or, if too deep, returns to the feasible point.
+    c = seen.height > -kMaxStep
+            ? Vec3(c - seen.height / std::max(seen.slope, kMinSlope) * seen.normal)
             : anchor;
   }
   if (!smooth) {
@@ -377,14 +382,15 @@ ProxyMove ProxySearch::follow(const Vec3& x, const Vec3& from, double ball,
       c = (anchor - x).squaredNorm() <= from_start ? anchor : start;
   } else if (const double d0 = (start - from).norm(), d1 = (c - x).norm();
              d0 > kOnSurface && d1 > kOnSurface) {
-    lend(proxy, 0.25 * (d0 + d1) * (1 / d0 * (start - from) + 1 / d1 * (c - x)).dot(c - start),
-         c - start);
+    addGeneratedEnergy(
+        proxy, 0.25 * (d0 + d1) * (1 / d0 * (start - from) + 1 / d1 * (c - x)).dot(c - start),
+        c - start);
   }
   for (int i = walls.count - 1; i >= 0; --i)
-    if ((walls[i].seen - c).squaredNorm() > kForget * kForget) walls.remove(i);
+    if ((walls[i].point - c).squaredNorm() > kDropDistance * kDropDistance) walls.remove(i);
   proxy.c = c;
   move.touching = true;
-  move.snap = aim.by_ball;
+  move.snap = aim.by_step;
   move.held = projectOntoWalls(walls, x);
   return move;
 }

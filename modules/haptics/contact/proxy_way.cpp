@@ -1,4 +1,4 @@
-// How a proxy comes into contact and out of it: the way to the surface.
+// How a proxy enters and leaves contact: crossings of the path with the surface.
 #include <algorithm>
 #include <cmath>
 
@@ -7,19 +7,19 @@
 namespace patina {
 namespace {
 
-// Voxels.
-constexpr double kOnSurface = 1e-5, kSeated = 1e-4, kGrazing = 0.02;
-constexpr double kNoWay = 1; // within it the far end alone tells
+// Lengths in voxels.
+constexpr double kOnSurface = 1e-5, kReprojected = 1e-4, kGrazing = 0.02;
+constexpr double kMinPathLength = 1; // shorter paths are judged by their end alone
 constexpr double kFlat = 0.2;
-constexpr double kLeastStep = 1.0 / 16;
-constexpr int kMostMarch = 128, kMostSeek = 24;
+constexpr double kMinStep = 1.0 / 16;
+constexpr int kMaxMarch = 128, kMaxSeek = 24;
 
 } // namespace
 
 bool ProxySearch::isFree(const Vec3& from, double height_from, const Vec3& to, double height_to,
                          int& samples) const noexcept {
   const double way = (to - from).norm();
-  return way < kNoWay || per_steepness_ * (height_from + height_to) >= way ||
+  return way < kMinPathLength || per_lipschitz_ * (height_from + height_to) >= way ||
          !firstCrossing(from, height_from, to, height_to, samples, kGrazing);
 }
 
@@ -30,14 +30,14 @@ std::optional<Vec3> ProxySearch::firstCrossing(const Vec3& from, double height_f
   if (!(length > 0)) return std::nullopt;
   const Vec3 along = 1 / length * (to - from);
   double outside = 0, inside = -1, above = std::max(height_from, 0.0), below = 0;
-  // Where a step is no longer than what the field resolves the far end alone tells.
-  if (height_to && *height_to < 0 && length < kNoWay) {
+  // The end alone decides if the step is shorter than the field's resolution.
+  if (height_to && *height_to < 0 && length < kMinPathLength) {
     inside = length;
     below = *height_to;
   }
-  for (int i = 0; inside < 0 && i < kMostMarch; ++i) {
+  for (int i = 0; inside < 0 && i < kMaxMarch; ++i) {
     if (outside >= length) return std::nullopt;
-    const double s = std::min(length, outside + std::max(per_steepness_ * above, kLeastStep));
+    const double s = std::min(length, outside + std::max(per_lipschitz_ * above, kMinStep));
     const double height = heightAt(from + s * along);
     ++samples;
     if (height < -grazing) {
@@ -48,12 +48,12 @@ std::optional<Vec3> ProxySearch::firstCrossing(const Vec3& from, double height_f
       above = std::max(height, 0.0);
     }
   }
-  if (inside < 0) { // a way that still grazes the surface is not known to be free
-    if (outside >= length || above >= kNoWay) return std::nullopt;
+  if (inside < 0) { // a path that still grazes the surface is not free
+    if (outside >= length || above >= kMinPathLength) return std::nullopt;
     return from + outside * along;
   }
   for (int k = 0; k < 24 && above > kOnSurface; ++k) {
-    // False position, kept off the ends so that a kink cannot hold it up.
+    // False position, kept off the ends so that a kink cannot stall it.
     const double share = std::clamp(above / (above - below), 0.05, 0.95);
     const double s = outside + share * (inside - outside);
     const double height = heightAt(from + s * along);
@@ -69,10 +69,10 @@ std::optional<Vec3> ProxySearch::firstCrossing(const Vec3& from, double height_f
   return from + outside * along;
 }
 
-bool ProxySearch::seat(const Vec3& x, Vec3& c, int& samples) const noexcept {
+bool ProxySearch::reproject(const Vec3& x, Vec3& c, int& samples) const noexcept {
   const double height = heightAt(c);
   ++samples;
-  if (std::abs(height) < kSeated) return true;
+  if (std::abs(height) < kReprojected) return true;
   const std::optional<Vec3> at =
       height > 0 ? firstCrossing(c, height, x, std::nullopt, samples) : seekSurface(c, samples);
   if (at) c = *at;
@@ -81,14 +81,15 @@ bool ProxySearch::seat(const Vec3& x, Vec3& c, int& samples) const noexcept {
 
 std::optional<Vec3> ProxySearch::seekSurface(const Vec3& x, int& samples) const noexcept {
   Vec3 q = x;
-  for (int i = 0; i < kMostSeek; ++i) {
+  for (int i = 0; i < kMaxSeek; ++i) {
     const GridSample sample = sampler_->atGrid(q);
     ++samples;
     const double height = sample.phi - iso_;
     if (sample.region == FieldRegion::band && std::abs(height) < kOnSurface) return q;
-    if (sample.region == FieldRegion::deep) {
-      // A blend of opposite directions is none of them; then the nearest point that a node knows.
-      if (const auto feet = sampler_->deepFeet(q)) {
+    if (sample.region == FieldRegion::interior) {
+      // A blend of opposite directions is meaningless; the nodes' nearest surface point replaces
+      // it.
+      if (const auto feet = sampler_->interiorClosestPoints(q)) {
         q = feet->nearest;
         continue;
       }

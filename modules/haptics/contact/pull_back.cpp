@@ -16,7 +16,7 @@ SurfaceJacobian jacobianOf(const FieldSampler& sampler, const Contact& contact) 
     const Vec3 line = contact.wall[0].normal.cross(contact.wall[1].normal);
     return SurfaceJacobian(1 / line.squaredNorm() * line * line.transpose());
   }
-  // Relief leans the normal; the surface that it lies on does not.
+  // Relief tilts the contact normal; the surface below keeps its own.
   Vec3 n = contact.normal;
   if (!contact.slope.isZero(0)) n = std::sqrt(1 + contact.slope.squaredNorm()) * n + contact.slope;
   return closestPointJacobian(sampler, sampler.toGrid(contact.surface), n,

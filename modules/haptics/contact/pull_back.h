@@ -1,4 +1,4 @@
-// How something that lies on the surface changes as the tip moves: by J of the closest point (F6).
+// Pulls a surface gradient back to the tip by the Jacobian of the closest point (F6).
 #pragma once
 
 #include "field/sampling/field_sampler.h"
@@ -6,16 +6,16 @@
 
 namespace patina {
 
-// J by a look at the surface itself, at q in grid coordinates; n: unit, outward there; phi [voxel]:
-// of the tip, positive outside.
+// Evaluates J at the surface point q (grid coordinates). n: unit outward normal there; phi: signed
+// distance of the tip [voxel], positive outside.
 SurfaceJacobian closestPointJacobian(const FieldSampler& sampler, const Vec3& q, const Vec3& n,
                                      double phi) noexcept;
 
 SurfaceJacobian jacobianOf(const FieldSampler& sampler, const Contact& contact) noexcept;
 
-// J along, at contact.surface for a contact held by one wall. Two leave J only the line they have
-// in common, three nothing; also where WallHold takes two for one, because the contact point stays
-// on their line all the same. J is worked out once a tick and kept in the contact.
+// Returns J times `along` at contact.surface. Two walls leave J only their common line, three leave
+// nothing; this also holds where ActiveConstraints merges two walls, because the contact point
+// stays on their line. Computes J once per tick and stores it in the contact.
 inline Vec3 pulledBack(const FieldSampler& sampler, Contact& contact, const Vec3& along) noexcept {
   if (!contact.jacobian) contact.jacobian = jacobianOf(sampler, contact);
   return *contact.jacobian * along;

@@ -1,46 +1,40 @@
-// Edits while touching: from one force law to the next without a step (MATH 2.4).
+// Cross-fades from one force law to the next after an edit, without a force step (MATH 2.4).
 #pragma once
 
-#include "haptics/servo/snapshot.h"
+#include "haptics/law/snapshot.h"
 
 namespace patina {
 
-// With the tip held still the force changes by no more than this a tick, whatever was edited.
+// Largest force change per tick by an edit while the tip rests.
 inline constexpr double kEditStep = 0.04; // [N]
 
-// Both laws see the same tip; the force passes from one to the other with a weight that grows by
-// kEditStep / |F_new - F_old| a tick, at once where the two agree. One mechanism for stiffness,
-// mode, offset, material, relief and objects: it is the parameters' mixture that ramps. The rate of
-// the loop's own force is never limited (F13): where the tip moves, both laws answer in full. Costs
-// a second tick while it lasts.
+// Evaluates both laws at the same tip and blends the forces; the new law's weight grows by
+// kEditStep / |F_new - F_old| per tick, to 1 at once if they agree. This covers every edit
+// (stiffness, mode, offset, material, relief, objects), because it blends results and not
+// parameters. The force rate itself is never limited (F13): both laws respond fully to the tip's
+// motion. Costs a second evaluation per tick during the fade.
 class CrossFade {
  public:
-  // What is felt, or, while fading, what was. Null: nothing, no force; that, too, fades.
-  const HapticSnapshot* felt() const noexcept { return felt_; }
+  // Law in use; during a fade the old one. Null: no law and no force, which is faded as well.
+  const HapticSnapshot* active() const noexcept { return active_; }
   bool fading() const noexcept { return fading_; }
-  // Not while fading. `next` and felt() must live until the fade has ended. Contact goes on from
-  // where it is: the contact point stays, or is brought onto the new surface on the side where it
-  // was.
-  void turnTo(const HapticSnapshot* next) noexcept;
-  // As tick() of snapshot.h. The record is the new law's, its force the mixture.
+  // Starts a fade; not allowed during one. `next` and the active law must live until its end. The
+  // contact point stays, or is reprojected onto the new surface on its own side.
+  void fadeTo(const HapticSnapshot* next) noexcept;
+  // As tick() of snapshot.h. Returns the new law's record with the blended force.
   Contact tick(const Vec3& tip, double dt) noexcept;
-  // Nobody has followed the tip: the next tick is as the first, under whichever law.
-  void lose() noexcept {
+  // Discards the contact state after unobserved motion; the next tick is a first one.
+  void resetContact() noexcept {
     memory_.reset();
     next_memory_.reset();
   }
-  // The field that the record of the last tick speaks of; null where nothing is felt.
-  const SurfaceField* field() const noexcept {
-    const HapticSnapshot* law = fading_ ? next_ : felt_;
-    return law ? law->field.get() : nullptr;
-  }
 
  private:
-  const HapticSnapshot* felt_ = nullptr;
-  const HapticSnapshot* next_ = nullptr; // while fading
+  const HapticSnapshot* active_ = nullptr;
+  const HapticSnapshot* next_ = nullptr; // set during a fade
   ContactMemory memory_;
   ContactMemory next_memory_;
-  double weight_ = 0; // of the new law
+  double weight_ = 0; // weight of the new law
   bool fading_ = false;
 };
 

@@ -12,7 +12,7 @@
 namespace patina {
 namespace {
 
-constexpr double kFirstPeriod = 1e-3; // [s], of a path of one row
+constexpr double kFirstPeriod = 1e-3; // [s], for a path of one row
 constexpr std::size_t kPollEvery = 4096;
 
 double period(const TimedTip& from, const TimedTip& to, std::size_t row) {
@@ -40,12 +40,12 @@ std::size_t feel(const HapticSnapshot& snapshot,
 
     ToolSample sample;
     sample.t = tip->t;
-    record(contact, snapshot.field.get(), sample);
+    record(contact, sample);
     sample.step_ns = static_cast<std::uint32_t>(std::min<long long>(ns, UINT32_MAX));
     take(sample);
     if (following) {
       const double step = period(*tip, *following, row + 1);
-      if (step > kOldestAge && step > kPause * dt) {
+      if (step > kMaxStateAge && step > kPause * dt) {
         memory.reset();
         ++pauses;
       } else {

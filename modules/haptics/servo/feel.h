@@ -1,4 +1,4 @@
-// A tip path felt through the servo's own code, in simulated time.
+// Runs a tip path through the servo's force law in simulated time.
 #pragma once
 
 #include <functional>
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "haptics/devices/device.h"
-#include "haptics/servo/snapshot.h"
+#include "haptics/device/device.h"
+#include "haptics/law/snapshot.h"
 #include "scene/tool_sample.h"
 
 namespace patina {
@@ -17,18 +17,18 @@ struct TimedTip {
   Vec3 tip = Vec3::Zero();
 };
 
-// A pause longer than kOldestAge and than so many of the ticks before it: the tip was lifted, and
-// is felt anew where it comes down, whatever lies between.
+// A pause longer than kMaxStateAge and than this many preceding ticks: the tip was lifted, and
+// contact starts afresh where it comes down.
 inline constexpr double kPause = 4;
 
-// One sample a tip, in memory that does not grow with the path: `next` gives a tip until it has
-// none, `take` gets its sample. dt is the difference of successive t, of the first tip that to the
-// second; after a pause as before it. Returns how many pauses there were. Throws Error if t does
-// not increase, Cancelled, and whatever the two throw.
+// Passes one sample per tip to `take`, in constant memory, until `next` is empty. dt is the
+// difference of successive t; the first tip and a tip after a pause use the neighbouring dt.
+// Returns the number of pauses. Throws Error if t does not increase, Cancelled, and the two
+// functions' exceptions.
 std::size_t feel(const HapticSnapshot& snapshot,
                  const std::function<std::optional<TimedTip>()>& next,
                  const std::function<void(const ToolSample&)>& take, const Progress& progress);
-// The same of a path that is whole.
+// The same for a complete path.
 std::vector<ToolSample> feel(const HapticSnapshot& snapshot, const std::vector<TimedTip>& path,
                              Progress& progress);
 

@@ -5,8 +5,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/run_queue_wait.h"
-#include "haptics/servo/realtime.h"
+#include "haptics/device/realtime.h"
+#include "haptics/servo/run_delay.h"
 
 namespace patina {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kUsPerNs = 1e-3;
 
 struct Wakeups {
   explicit Wakeups(std::size_t count) : late_us(count), wait_us(count) {}
-  std::vector<double> late_us, wait_us; // filled without allocating
+  std::vector<double> late_us, wait_us; // allocated in advance
   bool wait_known = true;
   RealtimeGrant grant;
   std::int64_t missed = 0;
@@ -24,7 +24,7 @@ struct Wakeups {
 
 void wakeUp(Wakeups& wakeups, std::int64_t period_ns) noexcept {
   wakeups.grant = requestRealtime();
-  const RunQueueWait wait;
+  const RunDelay wait;
   std::int64_t waited = wait.total().value_or(0);
   const std::int64_t start = monotonicNs();
   PeriodicClock clock(start, period_ns);

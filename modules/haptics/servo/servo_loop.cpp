@@ -8,15 +8,16 @@
 #include <thread>
 
 #include "core/timing_window.h"
+#include "haptics/device/realtime.h"
 #include "haptics/servo/cross_fade.h"
-#include "haptics/servo/realtime.h"
 #include "haptics/servo/tick_record.h"
 
 namespace patina {
 namespace {
 
 constexpr std::size_t kTimingTicks = 8192;
-constexpr std::size_t kSamples = 16384; // a window that hangs for 16 s loses nothing at 1 kHz
+constexpr std::size_t kSamples = 16384; // covers a window that hangs for 16 s at 1 kHz
+constexpr std::size_t kPaintSamples = 4096;
 constexpr double kNsPerSecond = 1e9;
 constexpr int kRateTicks = 250;
 
@@ -26,12 +27,13 @@ struct ServoLoop::Impl {
   Impl(std::unique_ptr<Device> device_in, double rate_hz)
       : device(std::move(device_in)), period_ns(periodNs(rate_hz)),
         samples(std::max<std::size_t>(kSamples, static_cast<std::size_t>(rate_hz))),
+        paint_samples(std::max<std::size_t>(kPaintSamples, static_cast<std::size_t>(rate_hz))),
         window(kTimingTicks) {
     if (!device) throw std::invalid_argument("servo loop: no device");
   }
 
   void run() noexcept {
-    pthread_setname_np(pthread_self(), "servo"); // as a debugger and /proc show it
+    pthread_setname_np(pthread_self(), "servo"); // name in debuggers and /proc
     grant.store(requestRealtime(), std::memory_order_release);
 
     const std::int64_t start = monotonicNs();
@@ -49,10 +51,10 @@ struct ServoLoop::Impl {
       last_wake = woke;
 
       const DeviceState state = device->exchange(force, dt);
-      const DeviceStatus status = judge(state);
-      if (status == DeviceStatus::lifted) {
+      const DeviceStatus status = effectiveStatus(state);
+      if (status == DeviceStatus::repositioning) {
         force.setZero();
-        law.lose();
+        law.resetContact();
         measureRate(woke);
         continue;
       }
@@ -60,20 +62,20 @@ struct ServoLoop::Impl {
       if (status != DeviceStatus::ok) {
         force.setZero();
         if (!holds(status)) break;
-        law.lose(); // it may be anywhere when it is felt again
+        law.resetContact(); // the tip may return at any position
         rate_mark = woke;
         ticks_since_mark = 0;
         continue;
       }
       if (!law.fading()) {
-        exchange.hold(law.felt()); // it may have to fade out
-        law.turnTo(exchange.latest());
+        exchange.protect(law.active()); // the old law may have to fade out
+        law.fadeTo(exchange.latest());
       }
       ToolSample sample;
       sample.t = static_cast<double>(woke - start) / kNsPerSecond;
       const std::int64_t before = monotonicNs();
       const Contact contact = law.tick(state.position, dt);
-      record(contact, law.field(), sample);
+      record(contact, sample);
       sample.buttons = static_cast<std::uint8_t>(state.buttons);
       force = contact.force;
       const std::int64_t step = monotonicNs() - before;
@@ -83,8 +85,9 @@ struct ServoLoop::Impl {
       window.record(woke - deadline);
       measureRate(woke);
       samples.push(sample);
+      paint_samples.push(sample);
     }
-    // A loop that has ended leaves no force behind.
+    // Leaves no force behind.
     device->exchange(Vec3::Zero(), static_cast<double>(period_ns) / kNsPerSecond);
   }
 
@@ -100,14 +103,15 @@ struct ServoLoop::Impl {
   std::int64_t period_ns;
   SnapshotExchange<HapticSnapshot> exchange;
   Ring<ToolSample> samples;
+  Ring<ToolSample> paint_samples;
   TimingWindow window;
   std::thread thread;
   std::atomic<bool> stopping{false};
   std::atomic<std::uint64_t> missed{0};
   std::atomic<double> measured_rate{0};
   std::atomic<DeviceStatus> device_status{DeviceStatus::ok};
-  std::atomic<RealtimeGrant> grant{RealtimeGrant{-1, -1}}; // before the first start
-  std::int64_t rate_mark = 0;                              // servo thread's own, as the next
+  std::atomic<RealtimeGrant> grant{RealtimeGrant{-1, -1}}; // not requested before the first start
+  std::int64_t rate_mark = 0;                              // servo thread only, like the next
   int ticks_since_mark = 0;
 };
 
@@ -141,6 +145,10 @@ void ServoLoop::publish(std::shared_ptr<const HapticSnapshot> snapshot) {
 
 void ServoLoop::collect() {
   impl_->exchange.collect();
+}
+
+Ring<ToolSample>& ServoLoop::paint_samples() {
+  return impl_->paint_samples;
 }
 
 Ring<ToolSample>& ServoLoop::samples() {

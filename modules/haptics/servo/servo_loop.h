@@ -1,4 +1,4 @@
-// The servo thread: device -> stages -> limit -> device.
+// Servo thread: device -> stages -> limit -> device.
 #pragma once
 
 #include <cstdint>
@@ -7,42 +7,43 @@
 
 #include "core/ring.h"
 #include "core/snapshot_exchange.h"
-#include "haptics/devices/device.h"
-#include "haptics/servo/snapshot.h"
+#include "haptics/device/device.h"
+#include "haptics/law/snapshot.h"
 #include "scene/tool_sample.h"
 
 namespace patina {
 
 struct ServoTiming {
-  std::string policy; // "SCHED_FIFO 50, memory locked" or what was refused
+  std::string policy; // "SCHED_FIFO 50, memory locked", or the refusal
   bool realtime = false;
   std::uint64_t ticks = 0;
-  std::uint64_t missed = 0; // deadlines that passed by more than a period
-  double late_p99 = 0;      // [us], exact, of the last 8192 ticks at least
+  std::uint64_t missed = 0; // deadlines missed by more than a period
+  double late_p99 = 0; // 99th percentile of wake-up latency, at least of the last 8192 ticks [us]
   double rate_hz = 0;
-  // Calibrating or away: the loop holds, without force. Any failure: it has ended, without force.
+  // Calibrating or reconnecting: the loop continues without force. A failure has ended it.
   DeviceStatus device = DeviceStatus::ok;
 };
 
-// All of it belongs to one thread (the window's), except what says otherwise.
+// Single-threaded (the window's thread), except as noted.
 class ServoLoop {
  public:
-  // Does not start. rate in 100 .. 10000 Hz.
+  // Does not start the thread. rate in 100 .. 10000 Hz.
   ServoLoop(std::unique_ptr<Device> device, double rate_hz = 1000);
-  ~ServoLoop(); // stops
+  ~ServoLoop(); // stops the thread
   ServoLoop(const ServoLoop&) = delete;
   ServoLoop& operator=(const ServoLoop&) = delete;
 
   void start();
   void stop();
-  bool running() const; // started and not stopped, even if the device has failed
+  bool running() const; // true from start() to stop(), even after a device failure
 
-  // publish: felt at the next tick, never waits. collect: frees snapshots that the servo has left,
-  // as publish does too; call it now and then.
+  // publish(): takes effect at the next tick; never waits. collect(): frees snapshots that the
+  // servo no longer uses, as publish() does too; call it regularly.
   void publish(std::shared_ptr<const HapticSnapshot> snapshot);
   void collect();
-  Ring<ToolSample>& samples(); // consumer: one thread; holds 16384, 1 s at least
-  ServoTiming timing() const;  // any thread
+  Ring<ToolSample>& samples();       // one consumer thread; holds 16384 samples, at least 1 s
+  Ring<ToolSample>& paint_samples(); // the same samples for the thread that paints; holds 4096
+  ServoTiming timing() const;        // any thread
 
  private:
   struct Impl;

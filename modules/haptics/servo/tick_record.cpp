@@ -1,10 +1,8 @@
 #include "haptics/servo/tick_record.h"
 
-#include "field/sampling/field_sampler.h"
-
 namespace patina {
 
-void record(const Contact& contact, const SurfaceField* field, ToolSample& sample) noexcept {
+void record(const Contact& contact, ToolSample& sample) noexcept {
   sample.tip = contact.tip;
   sample.force = contact.force;
   sample.vcp = contact.tip;
@@ -13,14 +11,13 @@ void record(const Contact& contact, const SurfaceField* field, ToolSample& sampl
   sample.attracted = contact.attracted;
   sample.deep = contact.deep;
   sample.fault = contact.fault;
-  sample.snap = contact.snap;
-  sample.held = static_cast<std::uint8_t>(contact.touching ? contact.walls : 0);
+  sample.relocating = contact.snap;
+  sample.constraint_count = static_cast<std::uint8_t>(contact.touching ? contact.walls : 0);
   if (!contact.touching && !contact.attracted) return;
   sample.vcp = contact.vcp;
   sample.surface = contact.surface;
   sample.normal = contact.normal;
   sample.depth = contact.depth;
-  if (field) sample.face = FieldSampler(*field, Sampler::kim).faceNear(contact.surface);
 }
 
 } // namespace patina

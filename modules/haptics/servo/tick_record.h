@@ -1,14 +1,12 @@
-// One tick as the window, recorders and files see it.
+// Converts a tick's contact into the sample for the window, recorders and files.
 #pragma once
 
-#include "field/store/surface_field.h"
 #include "haptics/contact/contact.h"
 #include "scene/tool_sample.h"
 
 namespace patina {
 
-// Fills all but the times. `field` is the one that was felt; null: there is none. Servo thread: no
-// lock, allocation or throw.
-void record(const Contact& contact, const SurfaceField* field, ToolSample& sample) noexcept;
+// Fills every member but the times. Servo thread: no lock, allocation or throw.
+void record(const Contact& contact, ToolSample& sample) noexcept;
 
 } // namespace patina

@@ -14,7 +14,7 @@
 namespace patina {
 namespace {
 
-// OpenEXR's convention is premultiplied colour; ours in a file that says so is not.
+// OpenEXR's convention is premultiplied colour; files with this attribute are not premultiplied.
 constexpr const char* kStraight = "patina:straightAlpha";
 
 std::string oneLine(std::string text) {
@@ -39,9 +39,23 @@ std::string refusal(const OIIO::ImageSpec& spec, const ImageLimits& limits) {
   return "";
 }
 
-std::string readOpened(OIIO::ImageInput& input, const ImageLimits& limits, ImageRows& out) {
+// Checks the size that a PNG or an EXR gives itself before memory is set aside for it: deflate
+// packs 1032 bytes into one, and a pixel of one bit may stand for four channels of a byte.
+bool isTooShort(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec, std::uint64_t bytes) {
+  constexpr std::uint64_t kMostExpansion = 1032 * 8 * 4 + 256;
+  const std::string format = input.format_name();
+  return (format == "png" || format == "openexr") &&
+         spec.image_bytes(true) / kMostExpansion > bytes;
+}
+
+// `bytes`: size of the file.
+std::string readOpened(OIIO::ImageInput& input, const ImageLimits& limits, std::uint64_t bytes,
+                       ImageRows& out) {
   const OIIO::ImageSpec spec = input.spec();
   if (std::string cause = refusal(spec, limits); !cause.empty()) return cause;
+  if (isTooShort(input, spec, bytes))
+    return "is cut off or damaged: " + std::to_string(bytes) + " bytes cannot hold " +
+           std::to_string(spec.width) + " x " + std::to_string(spec.height) + " texels";
   out.width = spec.width;
   out.height = spec.height;
   out.channels = std::min(spec.nchannels, limits.channels);
@@ -53,7 +67,7 @@ std::string readOpened(OIIO::ImageInput& input, const ImageLimits& limits, Image
   const bool alpha = spec.alpha_channel == out.channels - 1 && out.channels % 2 == 0;
   out.premultiplied = alpha && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0 &&
                       spec.get_int_attribute(kStraight, 0) == 0;
-  // Of formats that carry EXIF as it is. Others are turned by their reader, or mean something else.
+  // These formats store EXIF unchanged; readers of others rotate, or the attribute differs.
   const std::string format = input.format_name();
   if (format == "jpeg" || format == "png" || format == "tiff" || format == "webp")
     out.orientation = spec.get_int_attribute("Orientation", 1);
@@ -61,8 +75,8 @@ std::string readOpened(OIIO::ImageInput& input, const ImageLimits& limits, Image
   return "";
 }
 
-// The error stream, silent: libpng and others print what they return as well, and a program says
-// one line. What another thread prints meanwhile is lost.
+// Silences the error stream, since libpng and others print what they also return. Messages of other
+// threads are lost meanwhile.
 class Silence {
  public:
   Silence() : guard_(lock()), old_(::dup(STDERR_FILENO)) {
@@ -91,7 +105,7 @@ OIIO::ImageSpec specOf(const ImageRows& rows, OIIO::TypeDesc type) {
   OIIO::ImageSpec spec(rows.width, rows.height, rows.channels, type);
   if (rows.channels == 2) spec.channelnames = {"Y", "A"};
   spec.alpha_channel = rows.channels % 2 == 0 ? rows.channels - 1 : -1;
-  // Else that of the clock goes into the file, and equal images are to be equal files.
+  // A fixed date replaces the current one, so that equal images give equal files.
   spec.attribute("DateTime", "1970:01:01 00:00:00");
   return spec;
 }
@@ -109,7 +123,7 @@ std::string write(const char* format, const OIIO::ImageSpec& spec, const void* d
   return "";
 }
 
-// Nothing that is thrown, not even for want of memory, may leave the library.
+// No exception, not even bad_alloc, may leave the library.
 template <typename Work> std::string guarded(const Work& work) {
   try {
     return work();
@@ -126,7 +140,8 @@ std::string readFile(const std::string& path, const ImageLimits& limits, ImageRo
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     const auto input = OIIO::ImageInput::open(path, &config);
-    return input ? readOpened(*input, limits, out) : oneLine(OIIO::geterror());
+    return input ? readOpened(*input, limits, OIIO::Filesystem::file_size(path), out)
+                 : oneLine(OIIO::geterror());
   });
 }
 
@@ -137,7 +152,7 @@ std::string readExr(std::string_view bytes, const ImageLimits& limits, ImageRows
     if (!input) return oneLine(OIIO::geterror());
     OIIO::ImageSpec spec;
     if (!input->set_ioproxy(&proxy)) return "cannot be read from memory";
-    return input->open("memory.exr", spec) ? readOpened(*input, limits, out)
+    return input->open("memory.exr", spec) ? readOpened(*input, limits, bytes.size(), out)
                                            : oneLine(input->geterror());
   });
 }
@@ -145,7 +160,7 @@ std::string readExr(std::string_view bytes, const ImageLimits& limits, ImageRows
 std::string writeExr(const ImageRows& rows, std::string& bytes) {
   return guarded([&] {
     OIIO::ImageSpec spec = specOf(rows, OIIO::TypeFloat);
-    // Of what most images are, zeros, little is left; a tighter packing takes three times as long.
+    // Most images are zeros, which pack well; better compression takes three times as long.
     spec.attribute("compression", "rle");
     spec.attribute(kStraight, 1);
     return write("exr", spec, rows.value.data(), bytes);
@@ -156,8 +171,8 @@ template <typename Whole>
 std::string writePngOf(const ImageRows& rows, const OIIO::TypeDesc& type, std::string& bytes) {
   OIIO::ImageSpec spec = specOf(rows, type);
   spec.attribute("oiio:UnassociatedAlpha", 1);
-  // Frames are grey noise, of which packing takes more time than it saves room; the difference to
-  // the row above (PNG's filter "up") is the quickest that packs as well.
+  // Grey noise hardly compresses; the difference to the row above (PNG's filter "up") is the
+  // fastest method with an equal size.
   if (sizeof(Whole) == 1) {
     constexpr int kUp = 0x20;
     spec.attribute("png:compressionLevel", 1);
@@ -184,7 +199,7 @@ std::string writePng(const ImageRows& rows, int bits, std::string& bytes) {
 
 extern "C" __attribute__((visibility("default"))) const ImageLibrary* patinaImageLibrary() {
   static constexpr ImageLibrary kLibrary{readFile, readExr, writeExr, writePng};
-  // No threads of the library's own beside the servo.
+  // Uses no threads of the library while the servo runs.
   static const bool quiet = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
   (void)quiet;
   return &kLibrary;

@@ -1,5 +1,5 @@
-// What the program asks of the library of pictures, which it loads with the first of them. Both
-// sides are built together, so that C++ types may cross; exceptions may not.
+// Interface of the picture library, which is loaded at first use. Both sides are built together, so
+// that C++ types may cross; exceptions may not.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@ struct ImageRows {
   int width = 0, height = 0, channels = 0;
   std::vector<float> value; // channel fastest, the top row first
   bool premultiplied = false;
-  int orientation = 1; // EXIF's
+  int orientation = 1; // EXIF value
 
-  std::size_t rowSize() const { // values
+  std::size_t rowSize() const { // number of values
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
   }
 };
@@ -23,10 +23,10 @@ struct ImageRows {
 struct ImageLimits {
   int side = 0;           // texels
   std::size_t values = 0; // texels times channels
-  int channels = 4;       // what a file holds beyond them is passed over
+  int channels = 4;       // further channels of a file are skipped
 };
 
-// Each returns an empty text, or why it could not.
+// Each function returns an empty text, or the reason of the failure.
 struct ImageLibrary {
   std::string (*read_file)(const std::string& path, const ImageLimits&, ImageRows& out);
   std::string (*read_exr)(std::string_view bytes, const ImageLimits&, ImageRows& out);
@@ -35,7 +35,7 @@ struct ImageLibrary {
   std::string (*write_png)(const ImageRows&, int bits, std::string& bytes);
 };
 
-// The one symbol that is looked up.
+// The only exported symbol.
 inline constexpr const char* kImageLibrarySymbol = "patinaImageLibrary";
 using ImageLibraryFunction = const ImageLibrary*();
 

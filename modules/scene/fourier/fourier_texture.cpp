@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/fourier/exact_phase.h"
+#include "scene/fourier/reduced_phase.h"
 #include "scene/fourier/series_sum.h"
 
 namespace patina {
@@ -53,7 +53,7 @@ std::string problemOfTerms(const FourierTexture& texture) {
   return areFinite(texture.plane) ? "" : "a coefficient is not a finite number";
 }
 
-// SplitMix64: the same numbers everywhere.
+// SplitMix64 (Steele, Lea & Flood 2014): the same numbers on every machine.
 double drawnTurn(std::uint64_t& state) {
   std::uint64_t z = state += 0x9e3779b97f4a7c15;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
@@ -72,7 +72,7 @@ struct PlaneTerms {
 
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Height and gradient by the phases, term by term.
+// Height and gradient by the phases, summed term by term.
 struct Place {
   double height = 0;
   Vec2 gradient = Vec2::Zero();
@@ -105,7 +105,7 @@ class Heights {
     return {v.u.dot(along_y) - plane(0, 0), {v.u.dot(plane * u.slopes), v.slopes.dot(along_y)}};
   }
 
-  // On n by n places of a period (1 row where it is flat along y), row upon row.
+  // Samples a period at n by n points (1 row if it does not depend on y), row by row.
   Square samples(int n) const {
     Square terms(n, 2 * count_ + 1), slopes(1, 2 * count_ + 1);
     for (int i = 0; i < n; ++i)
@@ -138,7 +138,7 @@ class Heights {
   FourierSeries series_;
 };
 
-// Downhill by steps along the axes that shrink where none leads lower.
+// Descends by steps along the axes, halved when no neighbour is lower.
 double bottomFrom(const Heights& heights, double x, double y, double step) {
   double least = heights.at(x, y).height;
   for (const double smallest = 1e-8 * step; step > smallest;) {
@@ -168,7 +168,7 @@ double power(const FourierSeries& series, bool of_slope) {
   return sum;
 }
 
-// The mean of two series' product, or of their slopes' by the phase.
+// Returns the mean of the product of two series, or of their slopes by the phase.
 double common(const FourierSeries& f, const FourierSeries& g, bool of_slope) {
   double sum = of_slope ? 0 : f.mean * g.mean;
   for (std::size_t i = 0; i < f.a.size(); ++i) {
@@ -226,7 +226,7 @@ std::string problemOf(const FourierTexture& texture) {
   if (!(texture.low <= 0) || !std::isfinite(texture.low)) return "low is not a number below 0";
   if (std::string problem = problemOfTerms(texture); !problem.empty()) return problem;
   const bool plane = texture.kind == TextureKind::products || texture.kind == TextureKind::plane;
-  const int most = plane ? kMostPlaneHarmonics : kMostHarmonics;
+  const int most = plane ? kMaxPlaneHarmonics : kMaxHarmonics;
   return harmonics(texture) <= most ? ""
                                     : "there are more than " + std::to_string(most) + " harmonics";
 }
@@ -257,20 +257,20 @@ FourierSeries seriesOf(const FourierTexture& texture) {
 }
 
 double height(const FourierTexture& texture, double x, double y) {
-  return Heights(texture).at(exactPhase(x, texture.omega), exactPhase(y, texture.omega)).height;
+  return Heights(texture).at(reducePhase(x, texture.omega), reducePhase(y, texture.omega)).height;
 }
 
 Vec2 gradient(const FourierTexture& texture, double x, double y) {
   return texture.omega *
-         Heights(texture).at(exactPhase(x, texture.omega), exactPhase(y, texture.omega)).gradient;
+         Heights(texture).at(reducePhase(x, texture.omega), reducePhase(y, texture.omega)).gradient;
 }
 
 double slope(const FourierTexture& texture, double x) {
   return gradient(texture, x)[0];
 }
 
-double leastHeight(const FourierTexture& texture) {
-  constexpr std::size_t kFollowed = 8; // of the lowest samples
+double minHeight(const FourierTexture& texture) {
+  constexpr std::size_t kFollowed = 8; // number of lowest samples refined
   const Heights heights(texture);
   const int n = (heights.isFlatAlongY() ? 16 : 8) * harmonics(texture);
   const Square samples = heights.samples(n);

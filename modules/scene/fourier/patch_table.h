@@ -1,4 +1,4 @@
-// Textured faces, plain enough for a kernel of any instruction set (TexturePatches).
+// Textured faces as plain data for kernels of any instruction set (TexturePatches).
 #pragma once
 
 #include <cstddef>
@@ -8,22 +8,22 @@
 
 namespace patina {
 
-struct FeltTexture;
+struct HapticTexture;
 
 struct PatchTexture {
-  SeriesTable line; // without cells where the texture is more than a line
-  const FeltTexture* of = nullptr;
+  SeriesTable line; // without cells if the texture is more than a line
+  const HapticTexture* texture = nullptr;
 };
 
 struct TexturePatch {
-  double x[4], y[4]; // texture coordinates: by each axis of the world, and at the middle
+  double x[4], y[4]; // coefficients of x, y and z of the world, and the constant
   const PatchTexture* texture;
-  std::int32_t fade; // its place among the fades; -1: none
+  std::int32_t fade; // index of the fade; -1: none
 };
 
 struct PatchTable {
-  double middle[4]; // [m, world]; the last is -1: a place less it ends in 1, as x and y do
-  const std::int32_t* patch_of; // by face; -1: none
+  double middle[4]; // [m, world]; the last is -1, so that p - middle ends in 1 for the constant
+  const std::int32_t* patch_of; // per face; -1: none
   const TexturePatch* patches;
   std::size_t faces;
 };

@@ -1,5 +1,4 @@
-// The look for processors with AVX2 and FMA; compiled with those flags, entered only after asking
-// the processor.
+// Kernel for AVX2 and FMA, compiled with those flags and called only if the processor has both.
 #if defined(__AVX2__) && defined(__FMA__)
 #define PATINA_KERNEL series_avx2
 #include "scene/fourier/series_cells_kernel.h"

@@ -1,14 +1,14 @@
-// A cell of a line's table at a place: compiled once for every instruction set, within the kernels
-// that look into one. Nothing but what is always inlined.
+// Polynomial of one cell of a line's table, compiled within the kernels of each instruction set.
+// Uses always inlined functions only.
 #pragma once
 
-#include "field/sampling/four.h"
+#include "field/store/four.h"
 #include "scene/fourier/series_value.h"
 
 namespace patina::PATINA_KERNEL {
 
 // Coefficients in kRows rows of four: of t^k, t^(k + kRows), t^(k + 2 kRows), t^(k + 3 kRows), for
-// k = 0 on. Four polynomials side by side: the chain of products is a quarter as long.
+// k = 0 .. kRows - 1. Four parallel polynomials shorten the chain of products to a quarter.
 template <int kRows>
 [[gnu::always_inline]] inline SeriesValue polynomial(const double* coefficients,
                                                      double t) noexcept {

@@ -1,7 +1,7 @@
-// What a series is at a place.
+// Value of a series at a point.
 #pragma once
 
-#include "scene/fourier/exact_phase.h"
+#include "scene/fourier/reduced_phase.h"
 
 namespace patina {
 
@@ -9,15 +9,16 @@ struct SeriesValue {
   double value = 0, slope = 0; // slope by the phase
 };
 
-// Into cells of a ring at x; the slope by -1 .. 1 over a cell.
-using SeriesLook = SeriesValue (*)(const ExactRing& ring, const double* cells, double x) noexcept;
+// Evaluates periodic cells at x; the slope is by -1 .. 1 over a cell.
+using SeriesKernel = SeriesValue (*)(const PeriodicCells& ring, const double* cells,
+                                     double x) noexcept;
 
-// A line's table for a kernel that looks into it by itself.
+// Table of a texture over x only (TextureKind::line), as plain data for kernels.
 struct SeriesTable {
-  ExactRing ring;
-  const double* cells = nullptr; // absent: no line
-  int rows = 0;                  // of four coefficients a cell
-  double slope_scale = 0;        // from -1 .. 1 over a cell to what is asked for
+  PeriodicCells ring;
+  const double* cells = nullptr; // null: the texture is of another kind
+  int rows = 0;                  // rows of four coefficients per cell
+  double slope_scale = 0;        // converts the slope by -1 .. 1 over a cell to the caller's unit
 };
 
 } // namespace patina

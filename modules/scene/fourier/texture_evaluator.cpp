@@ -1,18 +1,25 @@
 #include "scene/fourier/texture_evaluator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
-#include "scene/fourier/exact_phase.h"
-#include "scene/fourier/plane_cells.h"
-#include "scene/fourier/plane_window.h"
-#include "scene/fourier/series_cells.h"
+#include "core/types.h"
+#include "scene/fourier/piecewise_series.h"
+#include "scene/fourier/reduced_phase.h"
 #include "scene/fourier/series_sum.h"
 
 namespace patina {
+
+// Value and slopes by the phases.
+struct PlaneValue {
+  double value = 0, slope_x = 0, slope_y = 0;
+};
 
 struct TextureEvaluator::Form {
   virtual ~Form() = default;
@@ -22,34 +29,201 @@ struct TextureEvaluator::Form {
 
 namespace {
 
-// Of the tolerance, what a table may leave out; the rest is for rounding.
-constexpr double kOfTable = 0.5;
+// Errors of height and gradient over their rms, of which a table takes half and rounding the rest.
+constexpr double kTolerance = 1e-12, kOfTable = 0.5 * kTolerance;
 
-// A series at places [m].
-struct RotatedLine {
-  RotatedSeries series;
-  double omega;
+// A plane of harmonics by the non-uniform FFT, type 2 (Potts, Steidl & Tasche 2001), with a
+// Kaiser-Bessel window: coefficients are divided by the window's spectrum and summed on an
+// oversampled grid once; a value is the weighted sum of the few samples around its point.
+class PlaneNufft final : public TextureEvaluator::Form {
+ public:
+  // `plane` as in FourierTexture; its mean is ignored. Uses a window of 14 samples if it keeps
+  // aliases below kOfTable of the sum of all terms, else of 16.
+  PlaneNufft(const std::vector<double>& plane, int harmonics, double omega);
 
-  RotatedLine(const FourierSeries& of, double fundamental) : series(of), omega(fundamental) {}
-  SeriesValue at(double x) const noexcept { return series.at(exactPhase(x, omega)); }
-  std::size_t bytes() const { return series.bytes(); }
+  PlaneValue at(double x, double y) const noexcept override;
+  std::size_t bytes() const override { return sizeof(double) * (grid_.size() + weights_.size()); }
+
+ private:
+  template <int kWidth> PlaneValue through(double x, double y) const noexcept;
+
+  int width_ = 0;
+  PeriodicCells ring_; // period in samples
+  std::size_t stride_ = 0;
+  std::vector<double> grid_;    // rows along x, periodically extended by a window's width
+  std::vector<double> weights_; // polynomial of each sample's weight in -1 .. 1 over a step
 };
 
-template <class Line> struct LineForm final : TextureEvaluator::Form {
-  Line line;
-  double mean;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  LineForm(Line of, double without) : line(std::move(of)), mean(without) {}
+using Long = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+
+constexpr int kSamplesPerHarmonic = 4;
+constexpr int kMinSamples = 16;
+
+// Number of coefficients of a weight's polynomial for this window width.
+constexpr int coefficientsOf(int width) {
+  return width + 4;
+}
+
+struct Window {
+  int width;
+  double beta = 0.98 * std::numbers::pi * width * (1 - 0.5 / (kSamplesPerHarmonic / 2.0));
+
+  long double at(long double z) const { // z: samples from the centre
+    const long double inside = 1 - 4 * z * z / (width * width);
+    return std::cyl_bessel_i(0.0L, beta * std::sqrt(std::max(0.0L, inside)));
+  }
+  // Returns the window's spectrum at a frequency [rad/sample].
+  double spectrum(double frequency) const {
+    const double reach = frequency * width / 2, square = beta * beta - reach * reach;
+    const double root = std::sqrt(std::abs(square));
+    if (root < 1e-8) return width;
+    return width * (square > 0 ? std::sinh(root) : std::sin(root)) / root;
+  }
+};
+
+// Returns the largest relative slope error by aliases, one period of the grid away.
+double aliasError(const Window& window, int harmonics, int samples) {
+  double most = 0;
+  for (int j = 1; j <= harmonics; ++j) {
+    const double step = 2 * std::numbers::pi / samples, own = window.spectrum(j * step);
+    for (const int beside : {samples - j, samples + j})
+      // Uses the envelope of the spectrum, not its zeros.
+      most = std::max(
+          most, window.width /
+                    (own * std::sqrt(std::max(1.0, std::pow(beside * step * window.width / 2, 2) -
+                                                       window.beta * window.beta))) *
+                    beside / harmonics);
+  }
+  return most;
+}
+
+// Polynomials in t = -1 .. 1 through Chebyshev's points: rows are powers, columns samples. In long
+// double, because slopes amplify rounding a hundredfold.
+Rows weightsOf(const Window& window) {
+  const int count = coefficientsOf(window.width);
+  Rows weights(count, window.width);
+  for (int k = 0; k < window.width; ++k) {
+    Long chebyshev = Long::Zero(count);
+    for (int i = 0; i < count; ++i) {
+      const long double angle = std::numbers::pi_v<long double> * (i + 0.5L) / count;
+      const long double z = (std::cos(angle) + 1) / 2 + window.width / 2 - 1 - k;
+      for (int d = 0; d < count; ++d)
+        chebyshev[d] += (d == 0 ? 1.0L : 2.0L) / count * window.at(z) * std::cos(d * angle);
+    }
+    Long before = Long::Zero(count), now = before, sum = before;
+    now[0] = 1; // T0; T1 = t T0
+    for (int d = 0; d < count; ++d) {
+      sum += chebyshev[d] * now;
+      Long next = -before;
+      next.tail(count - 1) += (d == 0 ? 1.0L : 2.0L) * now.head(count - 1);
+      before = now;
+      now = next;
+    }
+    weights.col(k) = sum.cast<double>();
+  }
+  return weights;
+}
+
+template <int kWidth> struct Weights {
+  alignas(32) std::array<double, kWidth> value, slope;
+
+  Weights(const double* coefficients, double t) noexcept {
+    constexpr int kCount = coefficientsOf(kWidth);
+    const double* c = coefficients + (kCount - 1) * kWidth;
+    for (int k = 0; k < kWidth; ++k) {
+      value[static_cast<std::size_t>(k)] = c[k];
+      slope[static_cast<std::size_t>(k)] = 0;
+    }
+    for (int d = kCount - 2; d >= 0; --d) {
+      c -= kWidth;
+      for (std::size_t k = 0; k < kWidth; ++k) {
+        slope[k] = slope[k] * t + value[k];
+        value[k] = value[k] * t + c[k];
+      }
+    }
+  }
+};
+
+PlaneNufft::PlaneNufft(const std::vector<double>& plane, int harmonics, double omega)
+    : ring_(omega, std::max(kMinSamples, kSamplesPerHarmonic * harmonics)) {
+  const int samples = ring_.steps();
+  width_ = aliasError({14}, harmonics, samples) <= kOfTable ? 14 : 16;
+  const Window window{width_};
+  const Rows weights = weightsOf(window);
+  weights_.assign(weights.data(), weights.data() + weights.size());
+
+  const int side = 2 * harmonics + 1;
+  Rows terms(samples, side), slopes(1, side);
+  for (int i = 0; i < samples; ++i)
+    fillTerms(2 * std::numbers::pi * i / samples, harmonics, terms.row(i).data(), slopes.data());
+  Eigen::VectorXd divided(side);
+  for (int r = 0; r < side; ++r)
+    divided[r] = 1 / window.spectrum((r + 1) / 2 * 2 * std::numbers::pi / samples);
+  terms *= divided.asDiagonal();
+  Rows coefficients = Eigen::Map<const Rows>(plane.data(), side, side);
+  coefficients(0, 0) = 0;
+  const Rows grid = terms * coefficients * terms.transpose();
+
+  const int around = samples + width_;
+  stride_ = static_cast<std::size_t>(around);
+  grid_.resize(stride_ * stride_);
+  const int before = width_ / 2 - 1;
+  for (int r = 0; r < around; ++r)
+    for (int c = 0; c < around; ++c)
+      grid_[static_cast<std::size_t>(r) * stride_ + static_cast<std::size_t>(c)] =
+          grid((r - before + samples) % samples, (c - before + samples) % samples);
+}
+
+template <int kWidth> PlaneValue PlaneNufft::through(double x, double y) const noexcept {
+  const CellPosition column = ring_.at(x), row = ring_.at(y);
+  const Weights<kWidth> along_x(weights_.data(), 2 * column.fraction - 1),
+      along_y(weights_.data(), 2 * row.fraction - 1);
+  alignas(32) std::array<double, kWidth> value{}, slope{};
+  const double* samples = grid_.data() + static_cast<std::size_t>(row.step) * stride_ +
+                          static_cast<std::size_t>(column.step);
+  for (std::size_t r = 0; r < kWidth; ++r, samples += stride_)
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      value[k] += along_y.value[r] * samples[k];
+      slope[k] += along_y.slope[r] * samples[k];
+    }
+  PlaneValue sum;
+  for (std::size_t k = 0; k < kWidth; ++k) {
+    sum.value += along_x.value[k] * value[k];
+    sum.slope_x += along_x.slope[k] * value[k];
+    sum.slope_y += along_x.value[k] * slope[k];
+  }
+  const double by_phase = ring_.steps() / std::numbers::pi;
+  sum.slope_x *= by_phase;
+  sum.slope_y *= by_phase;
+  return sum;
+}
+
+PlaneValue PlaneNufft::at(double x, double y) const noexcept {
+  return width_ == 14 ? through<14>(x, y) : through<16>(x, y);
+}
+
+// A texture without waves.
+struct FlatForm final : TextureEvaluator::Form {
+  PlaneValue at(double, double) const noexcept override { return {}; }
+  std::size_t bytes() const override { return 0; }
+};
+
+struct LineForm final : TextureEvaluator::Form {
+  PiecewiseSeries line;
+
+  explicit LineForm(PiecewiseSeries of) : line(std::move(of)) {}
   PlaneValue at(double x, double) const noexcept override {
     const SeriesValue sum = line.at(x);
-    return {sum.value - mean, sum.slope, 0};
+    return {sum.value, sum.slope, 0};
   }
   std::size_t bytes() const override { return line.bytes(); }
 };
 
-template <class Line> struct ProductsForm final : TextureEvaluator::Form {
+struct ProductsForm final : TextureEvaluator::Form {
   struct Factors {
-    Line along_x, along_y;
+    PiecewiseSeries along_x, along_y;
   };
   std::vector<Factors> factors;
   double mean = 0;
@@ -71,53 +245,7 @@ template <class Line> struct ProductsForm final : TextureEvaluator::Form {
   }
 };
 
-template <class Table> struct TableForm final : TextureEvaluator::Form {
-  Table table;
-
-  explicit TableForm(Table of) : table(std::move(of)) {}
-  PlaneValue at(double x, double y) const noexcept override { return table.at(x, y); }
-  std::size_t bytes() const override { return table.bytes(); }
-};
-
-// A plane as a series along x for each of its terms along y.
-struct RowsForm final : TextureEvaluator::Form {
-  std::vector<RotatedSeries> rows;
-  double omega;
-
-  explicit RowsForm(const FourierTexture& texture) : omega(texture.omega) {
-    const auto side = static_cast<std::size_t>(2 * harmonics(texture) + 1);
-    for (std::size_t r = 0; r < side; ++r) {
-      FourierSeries series;
-      const double* row = texture.plane.data() + r * side;
-      series.mean = r == 0 ? 0 : row[0];
-      for (std::size_t c = 1; c < side; c += 2) {
-        series.a.push_back(row[c]);
-        series.b.push_back(row[c + 1]);
-      }
-      rows.emplace_back(series);
-    }
-  }
-  PlaneValue at(double x_place, double y_place) const noexcept override {
-    const double x = exactPhase(x_place, omega), y = exactPhase(y_place, omega);
-    const SeriesValue first = rows[0].at(x);
-    PlaneValue sum{first.value, first.slope, 0};
-    for (std::size_t r = 1; r < rows.size(); r += 2) {
-      const double k = static_cast<double>((r + 1) / 2), c = std::cos(k * y), s = std::sin(k * y);
-      const SeriesValue of_cos = rows[r].at(x), of_sin = rows[r + 1].at(x);
-      sum.value += c * of_cos.value + s * of_sin.value;
-      sum.slope_x += c * of_cos.slope + s * of_sin.slope;
-      sum.slope_y += k * (c * of_sin.value - s * of_cos.value);
-    }
-    return sum;
-  }
-  std::size_t bytes() const override {
-    std::size_t sum = 0;
-    for (const RotatedSeries& row : rows) sum += row.bytes();
-    return sum;
-  }
-};
-
-// What a table may be wrong by.
+// Allowed errors of a table.
 struct Errors {
   double height = 0, slope = 0; // slope by the phase
 };
@@ -129,78 +257,47 @@ double amplitudes(const FourierSeries& series, bool of_slope) {
   return sum;
 }
 
-template <class Line, class Make>
-std::shared_ptr<const TextureEvaluator::Form> productsForm(const FourierTexture& texture,
-                                                           const Make& make) {
-  auto form = std::make_shared<ProductsForm<Line>>();
-  for (const FourierProduct& product : texture.products) {
-    form->mean += product.along_x.mean * product.along_y.mean;
-    form->factors.push_back(
-        {make(product.along_x, product.along_y), make(product.along_y, product.along_x)});
-  }
-  return form;
-}
-
-std::shared_ptr<const TextureEvaluator::Form> exactForm(const FourierTexture& texture) {
-  if (texture.kind == TextureKind::plane) return std::make_shared<RowsForm>(texture);
-  if (texture.kind == TextureKind::products)
-    return productsForm<RotatedLine>(texture, [&](const FourierSeries& own, const FourierSeries&) {
-      return RotatedLine(own, texture.omega);
-    });
-  const FourierSeries series = seriesOf(texture);
-  return std::make_shared<LineForm<RotatedLine>>(RotatedLine(series, texture.omega), series.mean);
-}
-
 std::shared_ptr<const TextureEvaluator::Form> tableForm(const FourierTexture& texture,
                                                         const Errors& errors) {
   if (texture.kind == TextureKind::products) {
     const double share = 1 / static_cast<double>(2 * texture.products.size());
-    return productsForm<SeriesCells>(
-        texture, [&](const FourierSeries& own, const FourierSeries& other) {
-          // What this factor is wrong by is multiplied by the other one and by its slope; where
-          // that is nothing, it asks for nothing.
-          const auto over = [&](double error, double factor) {
-            return factor > 0 ? share * error / factor : std::numeric_limits<double>::infinity();
-          };
-          const double most = amplitudes(other, false), steepest = amplitudes(other, true);
-          return SeriesCells(own, std::min(over(errors.height, most), over(errors.slope, steepest)),
+    const auto factor = [&](const FourierSeries& own, const FourierSeries& other) {
+      // An error of this factor is multiplied by the other one and by its slope; if those are 0,
+      // any error is allowed.
+      const auto over = [&](double error, double by) {
+        return by > 0 ? share * error / by : std::numeric_limits<double>::infinity();
+      };
+      const double most = amplitudes(other, false), steepest = amplitudes(other, true);
+      return PiecewiseSeries(own, std::min(over(errors.height, most), over(errors.slope, steepest)),
                              over(errors.slope, most), texture.omega);
-        });
+    };
+    auto form = std::make_shared<ProductsForm>();
+    for (const FourierProduct& product : texture.products) {
+      form->mean += product.along_x.mean * product.along_y.mean;
+      form->factors.push_back(
+          {factor(product.along_x, product.along_y), factor(product.along_y, product.along_x)});
+    }
+    return form;
   }
   FourierSeries series = seriesOf(texture);
   series.mean = 0;
-  return std::make_shared<LineForm<SeriesCells>>(
-      SeriesCells(series, errors.height, errors.slope, texture.omega), 0.0);
-}
-
-std::shared_ptr<const TextureEvaluator::Form> planeForm(const FourierTexture& texture,
-                                                        const Errors& errors, double tolerance) {
-  if (tolerance >= PlaneCells::kFinest)
-    if (auto cells = PlaneCells::of(texture.plane, harmonics(texture), texture.omega, errors.height,
-                                    errors.slope))
-      return std::make_shared<TableForm<PlaneCells>>(std::move(*cells));
-  return std::make_shared<TableForm<PlaneWindow>>(
-      PlaneWindow(texture.plane, harmonics(texture), texture.omega, kOfTable * tolerance));
+  return std::make_shared<LineForm>(
+      PiecewiseSeries(series, errors.height, errors.slope, texture.omega));
 }
 
 } // namespace
 
-TextureEvaluator::TextureEvaluator(const FourierTexture& texture, double tolerance)
-    : omega_(texture.omega), low_(texture.low) {
+TextureEvaluator::TextureEvaluator(const FourierTexture& texture) : omega_(texture.omega) {
   if (const std::string problem = problemOf(texture); !problem.empty())
     throw Error("texture '" + texture.name + "': " + problem);
-  if (!(tolerance >= 0 && tolerance < 1))
-    throw Error("a texture's tolerance is from 0 to 1, not " + std::to_string(tolerance));
-  const Errors errors{kOfTable * tolerance * rmsHeight(texture),
-                      kOfTable * tolerance * rmsSlope(texture) / omega_};
-  if (!(errors.height > 0 && errors.slope > 0)) // all terms wanted, or nothing but zeros there
-    form_ = exactForm(texture);
+  const Errors errors{kOfTable * rmsHeight(texture), kOfTable * rmsSlope(texture) / omega_};
+  if (!(errors.height > 0 && errors.slope > 0))
+    form_ = std::make_shared<FlatForm>();
   else if (texture.kind == TextureKind::plane)
-    form_ = planeForm(texture, errors, tolerance);
+    form_ = std::make_shared<PlaneNufft>(texture.plane, harmonics(texture), texture.omega);
   else
     form_ = tableForm(texture, errors);
-  if (const auto* tabled = dynamic_cast<const LineForm<SeriesCells>*>(form_.get()))
-    line_ = &tabled->line;
+  if (const auto* tabled = dynamic_cast<const LineForm*>(form_.get())) line_ = &tabled->line;
 }
 
 TextureValue TextureEvaluator::ofForm(double x, double y) const noexcept {

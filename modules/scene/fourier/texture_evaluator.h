@@ -1,55 +1,52 @@
-// What a tick of the servo asks of a Fourier texture: height and gradient, from a table that is
-// made once.
+// Evaluates height and gradient of a Fourier texture in a servo tick, from a table made once.
 #pragma once
 
 #include <memory>
 
 #include "scene/fourier/fourier_texture.h"
-#include "scene/fourier/series_cells.h"
+#include "scene/fourier/piecewise_series.h"
+#include "scene/fourier/reduced_phase.h"
 
 namespace patina {
 
 struct TextureValue {
   double height = 0;            // above the mean [m]
-  Vec2 gradient = Vec2::Zero(); // by x and y
+  Vec2 gradient = Vec2::Zero(); // dh/dx, dh/dy
 };
 
-// Copies share their tables, which never change: as many threads as please may ask.
+// Copies share their immutable tables. Any number of threads.
 class TextureEvaluator {
  public:
-  // Within `tolerance` of the sum of all terms: of the height relative to its rms, of the gradient
-  // relative to its own; planes that are asked for more than 2e-6, but at rare places. Rounding
-  // leaves 2e-13 whatever is asked for. 0 adds up all terms. Tables of 128 harmonics answer in 9
-  // ns for a line, for a plane in 0.3 us at 1e-12, in 20 ns at 1e-5 (from up to 64 MB). Throws
-  // Error naming what is wrong with the texture, or with a tolerance outside of [0, 1).
-  explicit TextureEvaluator(const FourierTexture& texture, double tolerance = 1e-12);
+  // Keeps the height within 1e-12 of the sum of all terms relative to its rms, and the gradient
+  // relative to its own. Rounding errors are 2e-13 or more. For 128 harmonics a line takes 9 ns, a
+  // plane 0.3 us. Throws Error naming the fault of the texture.
+  explicit TextureEvaluator(const FourierTexture& texture);
 
-  // x, y [m], of any size: beyond 1e9 periods or more, or where they are no numbers, the value at
-  // 0. Neither locks nor allocates.
+  // x, y [m], of any size: beyond 1e9 periods or more, or for NaN, the result is that at 0. Neither
+  // locks nor allocates.
   TextureValue at(double x, double y = 0) const noexcept {
     if (!line_) return ofForm(x, y);
     const SeriesValue value = line_->at(x);
     return {value.value, Vec2(omega_ * value.slope, 0)};
   }
 
-  // Where that is all there is to it, its line: a view, slopes by x [m]. Else one without cells.
+  // Returns the line if the texture consists of it: a view, slopes by x [m]. Else a table without
+  // cells.
   SeriesTable line() const noexcept {
     if (!line_) return {};
     SeriesTable table = line_->table();
     table.slope_scale *= omega_;
     return table;
   }
-  double omega() const { return omega_; } // [rad/m]
-  double low() const { return low_; }     // at(...).height - low() >= 0, but for the tolerance [m]
-  std::size_t bytes() const;              // of its tables
+  std::size_t bytes() const; // size of the tables
 
-  struct Form; // how it is summed
+  struct Form; // method of evaluation
  private:
   TextureValue ofForm(double x, double y) const noexcept;
 
-  double omega_ = 0, low_ = 0;
+  double omega_ = 0;
   std::shared_ptr<const Form> form_;
-  const SeriesCells* line_ = nullptr; // of form_, where that is all there is to it
+  const PiecewiseSeries* line_ = nullptr; // the line of form_ if that is all
 };
 
 } // namespace patina

@@ -1,5 +1,5 @@
-// The channels of painted material: the one list, from which files, brushes, panels, reports and
-// the servo's reader take what they need.
+// Channels of painted material: the one list for files, brushes, panels, reports and the servo's
+// reader.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace patina {
 
-// What a contact is made of at one point. SI. Members are all channels, in the order of kChannels.
+// Material at one point, SI. Its members are all channels, in the order of kChannels.
 struct Material {
   double stiffness = 500;      // K [N/m]
   double static_friction = 0;  // mu_s
@@ -22,8 +22,8 @@ struct Material {
   bool operator==(const Material&) const = default;
 };
 
-// How what is felt changes about a point: of the trilinear interpolant, in the world; zero where
-// the channel is not painted.
+// Gradients of the composited values at a point, of the trilinear interpolant, in the world; zero
+// for unpainted channels.
 struct MaterialGradients {
   Vec3 stiffness = Vec3::Zero(); // [N/m^2]
   Vec3 roughness = Vec3::Zero(); // dimensionless
@@ -38,17 +38,17 @@ enum class MaterialChannel : std::uint8_t {
 };
 
 struct MaterialRange {
-  double least, most;
+  double min, max;
 };
 
-// How a person reads and sets it.
-struct ChannelReading {
+// Unit of the display and its scale.
+struct DisplayUnit {
   std::string_view unit; // UTF-8
-  double per_si;
+  double display_per_si;
   int decimals;
 };
-struct ChannelDial { // of the brush's panel, in the reading's unit
-  double least, most, step;
+struct SliderRange { // values of the brush panel, in the display unit
+  double min, max, step;
   int decimals;
   bool logarithmic;
 };
@@ -56,14 +56,14 @@ struct ChannelDial { // of the brush's panel, in the reading's unit
 struct Channel {
   MaterialChannel channel;
   double Material::*value;
-  std::string_view key, unit; // as in files; unit in SI, "" = a ratio
-  MaterialRange range;        // SI, that a scene allows: 0 or more
-  double usual;               // SI, of a fresh brush
-  std::string_view caption;   // "static friction"
-  std::string_view tool;      // its button; channels of one tool stand together and share it
-  std::string_view dial_caption, tip; // of the brush's value, of the tool
-  ChannelReading reading;
-  ChannelDial dial;
+  std::string_view key, unit;         // keys of files; unit in SI, "" = ratio
+  MaterialRange range;                // SI, allowed in a scene: 0 or more
+  double default_value;               // SI, initial value of a brush
+  std::string_view caption;           // "static friction"
+  std::string_view tool;              // tool button; channels of one tool are adjacent and share it
+  std::string_view dial_caption, tip; // caption of the value; tooltip of the tool
+  DisplayUnit reading;
+  SliderRange dial;
 };
 
 // clang-format off
@@ -105,7 +105,7 @@ constexpr std::string_view name(MaterialChannel channel) { // "stiffness", "fric
 constexpr std::string_view unit(MaterialChannel channel) { // "N/m", "" ...
   return rowOf(channel).unit;
 }
-// That with which the channel's tool begins.
+// Returns the first channel of the channel's tool.
 constexpr MaterialChannel firstOfTool(MaterialChannel channel) {
   for (const Channel& row : kChannels)
     if (row.tool == rowOf(channel).tool) return row.channel;

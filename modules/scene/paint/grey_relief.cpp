@@ -36,21 +36,21 @@ GreyImage greyOf(std::shared_ptr<const TiledImage> color, const GreyImage& known
   return {std::move(color), std::make_shared<const TiledImage>(std::move(made))};
 }
 
-std::shared_ptr<const TiledImage> reliefOf(const ObjectPaint& paint, ReliefFrom from,
+std::shared_ptr<const TiledImage> reliefOf(const ObjectPaint& paint, ReliefSource from,
                                            GreyImage* known) {
-  if (from == ReliefFrom::painted) return paint.relief;
+  if (from == ReliefSource::painted) return paint.relief;
   GreyImage made = greyOf(paint.color, known ? *known : GreyImage{});
   if (known) *known = made;
   return made.grey;
 }
 
-bool hasRelief(const ObjectPaint& paint, ReliefFrom from) {
-  return (from == ReliefFrom::painted ? paint.relief : paint.color) != nullptr;
+bool hasRelief(const ObjectPaint& paint, ReliefSource from) {
+  return (from == ReliefSource::painted ? paint.relief : paint.color) != nullptr;
 }
 
 std::shared_ptr<const ObjectPaint> withRelief(std::shared_ptr<const ObjectPaint> paint,
-                                              ReliefFrom from, GreyImage* known) {
-  if (!paint || from == ReliefFrom::painted) return paint;
+                                              ReliefSource from, GreyImage* known) {
+  if (!paint || from == ReliefSource::painted) return paint;
   auto shown = std::make_shared<ObjectPaint>(*paint);
   shown->relief = reliefOf(*paint, from, known);
   return shown;

@@ -47,7 +47,7 @@ MaterialLayer& MaterialMap::writable(const Index& block, MaterialChannel channel
   std::shared_ptr<MaterialLayer>& layer = blocks_[block].layer[static_cast<std::size_t>(channel)];
   if (!layer)
     layer = std::make_shared<MaterialLayer>();
-  else if (!own_.set.contains(layer.get()) || layer.use_count() > 1) // a plain copy shares it, too
+  else if (!own_.set.contains(layer.get()) || layer.use_count() > 1) // a plain copy also shares it
     layer = std::make_shared<MaterialLayer>(*layer);
   own_.set.insert(layer.get());
   return *layer;
@@ -79,7 +79,7 @@ void MaterialMap::dropEmptyLayers() {
 }
 
 std::size_t MaterialMap::bytes() const {
-  // A node of the tree is three pointers and a colour beside its value.
+  // A tree node has three pointers and a colour beside its value.
   std::size_t bytes = sizeof *this;
   for (const auto& [index, block] : blocks_) {
     bytes += sizeof(index) + sizeof(block) + 4 * sizeof(void*);
@@ -89,7 +89,7 @@ std::size_t MaterialMap::bytes() const {
   return bytes;
 }
 
-// Calls visit(block, node, share) for the corners of p's cell that lie in painted blocks.
+// Calls visit(block, node, share) for the corners of p's cell in painted blocks.
 template <typename Visit> void MaterialMap::forCorners(const Vec3& p, const Visit& visit) const {
   const Vec3 q = (p - origin_) / voxel_;
   if (!q.allFinite() || q.cwiseAbs().maxCoeff() > 1e9) return;
@@ -109,13 +109,13 @@ template <typename Visit> void MaterialMap::forCorners(const Vec3& p, const Visi
   }
 }
 
-double feltAt(const MaterialLayer& layer, std::size_t node, double own,
-              const MaterialRange& range) {
+double compositedAt(const MaterialLayer& layer, std::size_t node, double own,
+                    const MaterialRange& range) {
   const auto value = static_cast<double>(layer.value[node]);
   const auto weight = static_cast<double>(layer.weight[node]);
-  // Untouched values stay themselves, bit for bit.
+  // Unpainted values stay equal to the base bit for bit.
   if (value == 0 && weight == 0) return own;
-  return std::clamp(value + (1 - weight) * own, range.least, range.most);
+  return std::clamp(value + (1 - weight) * own, range.min, range.max);
 }
 
 Material MaterialMap::at(const Vec3& p, const Material& base) const {
@@ -125,7 +125,7 @@ Material MaterialMap::at(const Vec3& p, const Material& base) const {
       const auto c = static_cast<std::size_t>(channel);
       const double own = valueOf(base, channel);
       if (const MaterialLayer* layer = block.layer[c].get())
-        change[c] += share * (feltAt(*layer, node, own, rangeOf(channel)) - own);
+        change[c] += share * (compositedAt(*layer, node, own, rangeOf(channel)) - own);
     }
   });
   Material result = base;

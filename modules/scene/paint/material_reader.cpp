@@ -13,12 +13,12 @@ void lookUp(const MaterialView& view, const double* p, double* material,
 }
 namespace {
 
-// What material_kernel.h takes for granted.
+// Assumptions of material_kernel.h.
 static_assert(kMaterialSide == 8);
-static_assert(MaterialView::kMost == kMaterialChannels);
+static_assert(MaterialView::kMaxChannels == kMaterialChannels);
 static_assert(sizeof(Material) == kMaterialChannels * sizeof(double));
 
-MaterialLook lookOfThisProcessor() {
+MaterialKernel kernelOfThisProcessor() {
 #if defined(__x86_64__)
   if (hasAvx2()) return &material_avx2::lookUp;
 #endif
@@ -28,7 +28,7 @@ MaterialLook lookOfThisProcessor() {
 } // namespace
 
 MaterialReader::MaterialReader(const MaterialSamples& samples, const Pose& object_from_world)
-    : view_{}, look_(lookOfThisProcessor()) {
+    : view_{}, kernel_(kernelOfThisProcessor()) {
   const Eigen::Matrix3d by = samples.per_voxel * object_from_world.linear();
   const Vec3 at = samples.per_voxel * (object_from_world.translation() - samples.origin);
   const auto right = static_cast<std::int32_t>(samples.channels);
@@ -49,7 +49,7 @@ MaterialReader::MaterialReader(const MaterialSamples& samples, const Pose& objec
     }
   }
   view_.count[3] = 1;
-  view_.top = samples.top.data();
+  view_.block_index = samples.block_index.data();
   view_.nodes = samples.nodes.data();
   view_.channels = samples.channels;
   std::size_t c = 0;

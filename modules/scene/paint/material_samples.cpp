@@ -14,8 +14,8 @@ constexpr std::size_t kNodes = static_cast<std::size_t>(kSide) * kSide * kSide;
 
 } // namespace
 
-// Node after node, x fastest, each with its painted channels in order. Doubles, so that what paint
-// does not cover is the base bit for bit and an affine field is one (T-K22a).
+// Node by node, x fastest, each with its painted channels in order. Doubles keep the base bit for
+// bit where paint does not cover it and reproduce affine fields (T-K22a).
 struct MaterialSampleBlock {
   std::vector<double> values;
 };
@@ -25,7 +25,7 @@ namespace {
 using Index = MaterialMap::Index;
 using Painted = std::array<bool, kMaterialChannels>;
 
-// A dense table over a box of blocks.
+// Dense table over a box of blocks.
 template <class T> struct Table {
   std::array<int, 3> first{}, count{};
   std::vector<T> cells;
@@ -44,7 +44,7 @@ template <class T> struct Table {
   }
 };
 
-// The blocks of samples that read a block of the map: itself and its seven lower neighbours.
+// Visits the blocks of samples that read a block of the map: itself and its seven lower neighbours.
 template <class Visit> void readersOf(const Index& b, const Visit& visit) {
   for (int corner = 0; corner < 8; ++corner)
     visit(Index{b[0] - (corner & 1), b[1] - (corner >> 1 & 1), b[2] - (corner >> 2)});
@@ -73,7 +73,7 @@ Table<char> tableAround(const MaterialMap& map) {
 
 enum : char { kNothing = 0, kKept = 1, kMade = 2, kLost = 4 };
 
-// Marks what samples are needed, and which of them must be made anew. Both maps are in one order.
+// Marks the needed samples and those to compute again. Both maps have the same order.
 void mark(const MaterialMap& map, const MaterialMap* before, Table<char>& table) {
   const auto raise = [&](const Index& index, char to) {
     readersOf(index, [&](const Index& reader) {
@@ -92,7 +92,7 @@ void mark(const MaterialMap& map, const MaterialMap* before, Table<char>& table)
     const bool gone = n == now.end() || (w != was.end() && w->first < n->first);
     const bool fresh = !gone && (w == was.end() || n->first < w->first);
     if (gone) {
-      // Where its readers are still read by others, they have changed.
+      // Sample blocks that read a removed block have changed.
       readersOf(w->first, [&](const Index& reader) {
         std::size_t cell = 0;
         if (table.find(reader, cell)) table.cells[cell] |= kLost;
@@ -135,7 +135,7 @@ std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const In
   for (std::size_t c = 0; c < kMaterialChannels; ++c) {
     const double own = valueOf(base, kAllMaterialChannels[c]);
     const MaterialRange range = rangeOf(kAllMaterialChannels[c]);
-    extremes.least[c] = extremes.most[c] = own;
+    extremes.min[c] = extremes.max[c] = own;
     if (!painted[c]) continue;
     double* value = block->values.data() + slot++;
     for (int z = 0; z < kSide; ++z)
@@ -147,9 +147,9 @@ std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const In
           const MaterialLayer* layer = from ? from->layer[c].get() : nullptr;
           *value = own;
           if (!layer) continue;
-          *value = feltAt(*layer, node, own, range);
-          extremes.least[c] = std::min(extremes.least[c], *value);
-          extremes.most[c] = std::max(extremes.most[c], *value);
+          *value = compositedAt(*layer, node, own, range);
+          extremes.min[c] = std::min(extremes.min[c], *value);
+          extremes.max[c] = std::max(extremes.max[c], *value);
         }
   }
   return block;
@@ -158,7 +158,7 @@ std::shared_ptr<const MaterialSampleBlock> made(const MaterialMap& map, const In
 } // namespace
 
 std::size_t MaterialSamples::bytes() const {
-  return sizeof *this + top.size() * sizeof(top[0]) +
+  return sizeof *this + block_index.size() * sizeof(block_index[0]) +
          block.size() * (sizeof(block[0]) + sizeof(nodes[0]) + sizeof(Extremes) + sizeof(Index) +
                          sizeof(MaterialSampleBlock) + kNodes * channels * sizeof(double));
 }
@@ -182,8 +182,8 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   samples->blocks = table.count;
   samples->painted = painted;
   samples->channels = countOf(painted);
-  samples->base = samples->least = samples->most = base;
-  samples->top.assign(table.cells.size(), -1);
+  samples->base = samples->min = samples->max = base;
+  samples->block_index.assign(table.cells.size(), -1);
   Table<char> old;
   if (keeps) old = {before->first, before->blocks, {}};
   std::size_t cell = 0;
@@ -192,11 +192,12 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
       for (int x = 0; x < table.count[0]; ++x, ++cell) {
         if (table.cells[cell] == kNothing) continue;
         const Index at{x + table.first[0], y + table.first[1], z + table.first[2]};
-        samples->top[cell] = static_cast<std::int32_t>(samples->block.size());
+        samples->block_index[cell] = static_cast<std::int32_t>(samples->block.size());
         samples->block_at.push_back(at);
         std::size_t was = 0;
-        const std::int32_t slot =
-            keeps && table.cells[cell] == kKept && old.find(at, was) ? before->top[was] : -1;
+        const std::int32_t slot = keeps && table.cells[cell] == kKept && old.find(at, was)
+                                      ? before->block_index[was]
+                                      : -1;
         if (slot >= 0) {
           const auto kept = static_cast<std::size_t>(slot);
           samples->block.push_back(before->block[kept]);
@@ -210,10 +211,10 @@ std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, c
   for (const MaterialSamples::Extremes& extremes : samples->extremes)
     for (const MaterialChannel channel : kAllMaterialChannels) {
       const auto c = static_cast<std::size_t>(channel);
-      double& least = valueOf(samples->least, channel);
-      double& most = valueOf(samples->most, channel);
-      least = std::min(least, extremes.least[c]);
-      most = std::max(most, extremes.most[c]);
+      double& least = valueOf(samples->min, channel);
+      double& most = valueOf(samples->max, channel);
+      least = std::min(least, extremes.min[c]);
+      most = std::max(most, extremes.max[c]);
     }
   return samples;
 }

@@ -1,4 +1,4 @@
-// Painted material as the servo reads it, by MaterialReader (K22, K23).
+// Samples of painted material for MaterialReader in the servo (K22, K23).
 #pragma once
 
 #include <array>
@@ -10,31 +10,31 @@
 
 namespace patina {
 
-// Values as they are felt (paint over base), one block look-up a point: 9^3 nodes, those of a block
-// and the first layer of its upper neighbours. Only channels that are painted somewhere.
+// Composited values with one block look-up per point: 9^3 nodes, those of a block and the first
+// layer of its upper neighbours. Painted channels only.
 struct MaterialSampleBlock; // material_samples.cpp
 struct MaterialSamples {
-  // Of one channel's nodes in one block.
+  // Range of one channel's nodes in one block.
   struct Extremes {
-    std::array<double, kMaterialChannels> least{}, most{};
+    std::array<double, kMaterialChannels> min{}, max{};
   };
   Vec3 origin = Vec3::Zero(); // [m], object frame
   double per_voxel = 0;       // [1/m]
   std::array<int, 3> first{}, blocks{};
-  std::vector<std::int32_t> top; // slot, -1 = base everywhere
+  std::vector<std::int32_t> block_index; // slot, -1 = base everywhere
   std::vector<std::shared_ptr<const MaterialSampleBlock>> block;
-  std::vector<const double*> nodes; // of each block
-  std::vector<Extremes> extremes;   // by slot
+  std::vector<const double*> nodes; // first value of each block
+  std::vector<Extremes> extremes;   // per slot
   std::vector<MaterialMap::Index> block_at;
   std::array<bool, kMaterialChannels> painted{};
-  std::size_t channels = 0; // that are painted
+  std::size_t channels = 0; // number of painted channels
   Material base;
-  Material least, most; // of each channel anywhere, base included
+  Material min, max; // range of each channel, base included
   std::size_t bytes() const;
 };
 
-// `before` (made from an earlier version of `map` with the same base) keeps blocks whose layers are
-// the same; nullptr makes all. Null if nothing is painted.
+// Makes the samples of `map`. `before` (from an earlier version of it with the same base) provides
+// the blocks whose layers are unchanged; nullptr: none. Returns null if nothing is painted.
 std::shared_ptr<const MaterialSamples> materialSamples(const MaterialMap& map, const Material& base,
                                                        const MaterialMap* map_before,
                                                        const MaterialSamples* before);

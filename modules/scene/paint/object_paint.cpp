@@ -20,7 +20,7 @@ std::size_t bytes(const ObjectPaint& paint) {
 bool same(const ObjectPaint& a, const ObjectPaint& b) {
   const bool layouts = a.layout.uvs == b.layout.uvs ||
                        (a.layout.uvs && b.layout.uvs && *a.layout.uvs == *b.layout.uvs);
-  return layouts && a.layout.made == b.layout.made && sameParts(a.color, b.color) &&
+  return layouts && a.layout.generated == b.layout.generated && sameParts(a.color, b.color) &&
          sameParts(a.relief, b.relief) && sameParts(a.material, b.material) &&
          sameParts(a.textures, b.textures);
 }

@@ -1,11 +1,10 @@
-// The look for the texture under a point, compiled once for every instruction set: a source defines
-// PATINA_KERNEL (a name of its own) and includes this. It must use no inline function of another
-// header that is not always inlined, else the linker could keep the wrong copy for the whole
-// program.
+// Kernel that finds and evaluates the texture under a point, compiled once per instruction set: a
+// source defines PATINA_KERNEL (a unique name) and includes this. It must use only always inlined
+// functions of other headers, or the linker might keep the wrong copy for the whole program.
 #pragma once
 
 #include "scene/fourier/series_polynomial.h"
-#include "scene/paint/texture_look.h"
+#include "scene/paint/texture_hit.h"
 
 namespace patina::PATINA_KERNEL {
 
@@ -14,9 +13,9 @@ namespace patina::PATINA_KERNEL {
 }
 
 [[gnu::always_inline]] inline SeriesValue valueAt(const SeriesTable& line, double x) noexcept {
-  const RingPlace place = line.ring.at(x);
+  const CellPosition place = line.ring.at(x);
   const double* cell = line.cells + 4 * line.rows * place.step;
-  const double t = 2 * place.beyond - 1;
+  const double t = 2 * place.fraction - 1;
   switch (line.rows) {
   case 1:
     return polynomial<1>(cell, t);
@@ -29,8 +28,8 @@ namespace patina::PATINA_KERNEL {
   }
 }
 
-void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, double y, double z,
-               std::int32_t near_face, TextureFoot& foot, double* told) noexcept {
+void findTextureHit(const FaceTable& faces, const PatchTable& patches, double x, double y, double z,
+                    std::int32_t near_face, TextureHit& foot, double* result) noexcept {
   foot.face = -1;
   foot.patch = nullptr;
   constexpr Int4 kThree = {-1, -1, -1, 0};
@@ -47,12 +46,12 @@ void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, doub
                         p[2] * (Float4)(frame.lanes[2] & kThree);
     const float w1 = over[0], w2 = over[1], rest = 1 - (w1 + w2), two = lesser(w1, w2),
                 least = lesser(two, rest);
-    if (least > kWellWithin) [[likely]] {
+    if (least > kInteriorMargin) [[likely]] {
       foot.above = over[2];
       break;
     }
-    if (crossed == kMostCrossed || least > 0) return; // on an edge
-    // Corner k lies across the edge from k + 1 to k + 2.
+    if (crossed == kMaxCrossed || least > 0) return; // on an edge
+    // Corner k lies opposite the edge from k + 1 to k + 2.
     near_face = frame.lanes[rest <= two ? 1 : w1 <= w2 ? 2 : 0][3];
     if (near_face < 0) return;
   }
@@ -66,8 +65,8 @@ void lookUnder(const FaceTable& faces, const PatchTable& patches, double x, doub
   const Double4 by = *reinterpret_cast<const Double4At*>(patch.x),
                 parts = (at - *reinterpret_cast<const Double4At*>(patches.middle)) * by;
   const SeriesValue value = valueAt(line, (parts[0] + parts[1]) + (parts[2] + parts[3]));
-  told[0] = value.value;
-  told[1] = line.slope_scale * value.slope;
+  result[0] = value.value;
+  result[1] = line.slope_scale * value.slope;
 }
 
 } // namespace patina::PATINA_KERNEL

@@ -1,4 +1,4 @@
-// Fourier textures as most ticks ask for them: alone on a surface, away from edges.
+// Fast path for Fourier textures: without an image, away from edges.
 #pragma once
 
 #include <cmath>
@@ -6,24 +6,24 @@
 #include <type_traits>
 
 #include "scene/paint/relief_surface.h"
-#include "scene/paint/texture_look.h"
+#include "scene/paint/texture_hit.h"
 
 namespace patina {
 
-// A view: faces and textures of the surface must outlive it.
+// A view of the surface's faces and textures, which must outlive it.
 class TextureReader {
  public:
   explicit TextureReader(const ReliefSurface& relief);
 
-  // As reliefAt() without `bend`, into `at`, which is ReliefAt{}. False, and `at` as it was, where
-  // readClosest() has to tell: by an edge, where there is an image, and without such a face.
+  // Evaluates as reliefAt() without `hessian`, into `at`, which is ReliefAt{}. Returns false, `at`
+  // unchanged, if readClosest() is needed: near an edge, with an image, or for an invalid face.
   bool read(const Vec3& c, std::int32_t near_face, ReliefAt& at) const noexcept {
     if (static_cast<std::size_t>(near_face) >= faces_) return false;
-    // What the look tells, in its order.
+    // Order of results.
     static_assert(offsetof(PatchAt, height) == 0 && offsetof(PatchAt, rate) == sizeof(double) &&
                   std::is_standard_layout_v<PatchAt>);
-    TextureFoot foot;
-    look_(table_, textures_->table(), c.x(), c.y(), c.z(), near_face, foot, &at.height);
+    TextureHit foot;
+    kernel_(table_, textures_->table(), c.x(), c.y(), c.z(), near_face, foot, &at.height);
     if (foot.face < 0) return false;
     at.face = foot.face;
     at.distance = static_cast<double>(std::abs(foot.above));
@@ -38,9 +38,9 @@ class TextureReader {
 
  private:
   FaceTable table_{};
-  std::size_t faces_ = 0; // that a look may begin at; none where there is an image
+  std::size_t faces_ = 0; // faces to start from; 0 if there is an image
   const TexturePatches* textures_;
-  TextureLook look_;
+  TextureKernel kernel_;
 };
 
 } // namespace patina

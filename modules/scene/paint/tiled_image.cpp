@@ -9,7 +9,7 @@ namespace patina {
 namespace {
 
 bool isEmpty(const TiledImage::Tile& tile) {
-  // Bits, not values: -0 is kept, so that what is stored reads back.
+  // Compares bits, so that -0 is stored and read back.
   return std::all_of(tile.begin(), tile.end(), [](float v) { return v == 0 && !std::signbit(v); });
 }
 
@@ -18,7 +18,7 @@ bool isEmpty(const TiledImage::Tile& tile) {
 TiledImage::TiledImage(int width, int height, int channels)
     : width_(width), height_(height), channels_(channels), across_(width / kTileSide) {
   for (const int side : {width, height})
-    if (side < kLeastImage || side > kMostImage || side % kTileSide != 0)
+    if (side < kMinImage || side > kMaxImage || side % kTileSide != 0)
       throw std::invalid_argument("TiledImage: bad size");
   if (channels < 1 || channels > 4) throw std::invalid_argument("TiledImage: bad channels");
   tiles_.resize(static_cast<std::size_t>(across_) * static_cast<std::size_t>(height / kTileSide));
@@ -30,14 +30,14 @@ float* TiledImage::writable(std::size_t index) {
   char& own = own_.set[index];
   if (!tile)
     tile = std::make_shared<Tile>(static_cast<std::size_t>(kTileSide * kTileSide * channels_));
-  else if (!own || tile.use_count() > 1) // a plain copy of this image shares it, too
+  else if (!own || tile.use_count() > 1) // a plain copy also shares it
     tile = std::make_shared<Tile>(*tile);
   own = true;
   return tile->data();
 }
 
 TiledImage TiledImage::published() {
-  own_.set = noneOf(own_.set);
+  own_.set = sharedCopy(own_.set);
   return *this;
 }
 

@@ -1,21 +1,20 @@
-// An image of floats in tiles that versions share: what was not painted is not stored.
+// An image of floats in tiles that versions share; unpainted tiles are not stored.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 #include <vector>
 
-#include "scene/paint/own_parts.h"
+#include "scene/paint/unique_flags.h"
 
 namespace patina {
 
-inline constexpr int kTileSide = 32;   // texels
-inline constexpr int kLeastImage = 64; // texels a side; sizes are multiples of kTileSide
-inline constexpr int kMostImage = 4096;
+inline constexpr int kTileSide = 32; // texels
+inline constexpr int kMinImage = 64; // texels a side; sizes are multiples of kTileSide
+inline constexpr int kMaxImage = 4096;
 
-// Values are 0 where nothing was painted. Row 0 is at v = 0 (see geometry/atlas/texel_map.h).
-// Copies share tiles; writable() copies the one tile that is shared. Reading is safe on any thread
-// while the image itself is not written.
+// Unpainted values are 0. Row 0 is at v = 0 (see geometry/atlas/texel_map.h). Copies share tiles;
+// writable() copies a shared tile. Any thread may read while no thread writes this image.
 class TiledImage {
  public:
   using Tile = std::vector<float>; // kTileSide^2 * channels, channel fastest, then i
@@ -36,21 +35,21 @@ class TiledImage {
     return static_cast<std::size_t>(j / kTileSide) * static_cast<std::size_t>(across_) +
            static_cast<std::size_t>(i / kTileSide);
   }
-  std::size_t offsetOf(int i, int j) const { // in a tile
+  std::size_t offsetOf(int i, int j) const { // offset in a tile
     return static_cast<std::size_t>(((j % kTileSide) * kTileSide + i % kTileSide) * channels_);
   }
   float at(int i, int j, int channel) const {
     const float* values = tile(tileOf(i, j));
     return values ? values[offsetOf(i, j) + static_cast<std::size_t>(channel)] : 0.0f;
   }
-  // The texels of a tile for writing: allocated, or copied first unless they are its own. Threads
-  // may write different tiles at once.
+  // Returns the texels of a tile for writing, allocated or copied first if necessary. Threads may
+  // write different tiles at once.
   float* writable(std::size_t index);
-  // A copy for others; what is written from now on is not in it.
+  // Returns a copy for other threads, which later writes do not change.
   TiledImage published();
   // Drops tiles that are 0 everywhere.
   void dropEmptyTiles();
-  std::size_t bytes() const; // of all its tiles, shared or not
+  std::size_t bytes() const; // size of all tiles, shared or not
 
   // Bilinear between texel centres, clamped at the image's border; u, v in [0, 1].
   double sample(double u, double v, int channel) const;
@@ -58,10 +57,10 @@ class TiledImage {
  private:
   int width_, height_, channels_, across_;
   std::vector<std::shared_ptr<Tile>> tiles_;
-  OwnParts<std::vector<char>> own_; // by tile; not bits, which neighbours would share
+  UniqueFlags<std::vector<char>> own_; // per tile; not bits, which neighbours would share
 };
 
-// Bitwise, tile by tile; an absent tile equals one of zeros.
+// Compares bitwise, tile by tile; a missing tile equals zeros.
 bool same(const TiledImage& a, const TiledImage& b);
 
 } // namespace patina

@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/partial_output.h"
 #include "session/store/replay.h"
-#include "session/store/workspace_link.h"
+#include "session/store/workspace_storage.h"
 
 namespace patina {
 namespace {
@@ -22,10 +23,10 @@ bool isFinite(const StrokeSample& sample) {
          (!sample.tip || sample.tip->allFinite());
 }
 
-// As a stroke may hold it: a device that was started anew begins its time again.
+// Makes a sample valid for a stroke: the clock of a restarted device begins again.
 StrokeSample recordable(StrokeSample sample, const Stroke& stroke) {
   sample.force = std::abs(sample.force);
-  if (stroke.brush.seed == Seed::nearest) sample.tip.reset(); // nothing reads it
+  if (stroke.brush.anchor == DabAnchor::nearest) sample.tip.reset(); // not used
   if (!stroke.samples.empty()) sample.t = std::max(sample.t, stroke.samples.back().t);
   return sample;
 }
@@ -36,21 +37,31 @@ Scene withPaint(const Scene& scene, const std::vector<std::shared_ptr<const Obje
   return result;
 }
 
+// A stroke may paint what is there already, such as the same one again.
+bool isUnchanged(const Scene& scene, const std::vector<std::shared_ptr<const ObjectPaint>>& paint) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto& before = scene.objects[i].paint;
+    if (before != paint[i] && !(before && paint[i] && same(*before, *paint[i]))) return false;
+  }
+  return true;
+}
+
 } // namespace
 
 struct Editor::Impl {
   Listener listener;
   std::shared_ptr<const CompiledScene> compiled;
   std::unique_ptr<EditHistory> history;
-  std::unique_ptr<WorkspaceLink> link; // null while the scene has no folder
+  std::unique_ptr<WorkspaceStorage> storage; // null while the scene has no folder
   std::vector<std::string> notes;
   bool unsaved = false;
+  bool repeated = false;
   std::optional<std::size_t> opened_at;
   std::size_t budget = kHistoryBudget;
   Replayer replayer;
 
-  std::shared_ptr<const PaintSurface> surface; // of compiled; null until something is painted
-  std::unique_ptr<Painter> painter;            // while a stroke lasts
+  std::shared_ptr<const PaintSurface> surface; // null until something is painted
+  std::unique_ptr<Painter> painter;            // set during a stroke
   Stroke stroke;
   std::shared_ptr<const CompiledScene> before_stroke;
   bool touched = false;
@@ -59,20 +70,19 @@ struct Editor::Impl {
     if (!holds) throw std::invalid_argument(std::string("Editor: ") + what);
   }
 
-  void tell(std::optional<std::vector<PaintChange>> changes) const {
+  void notify(std::optional<std::vector<PaintChange>> changes) const {
     if (listener) listener({compiled, std::move(changes)});
   }
 
-  // What `scene` compiles to, with all that can be kept.
   std::shared_ptr<const CompiledScene> compiledFor(Scene scene, Progress& progress) const {
-    if (canRetune(*compiled, scene)) return retuned(*compiled, std::move(scene));
+    if (canReuseField(*compiled, scene)) return withNewParameters(*compiled, std::move(scene));
     return recompile(*compiled, std::move(scene), progress);
   }
 
-  // Once the journal holds it nothing can fail: if that is refused nothing has happened.
+  // Nothing can fail after the journal was written; if writing fails, nothing has changed.
   void commit(Edit edit, std::shared_ptr<const CompiledScene> after) {
     history->append(std::move(edit), after->scene, [this](const Edit& made, std::int64_t time) {
-      if (link) link->recordEdit(made, history->undoable() + 1, time);
+      if (storage) storage->recordEdit(made, history->undoable() + 1, time);
     });
     compiled = std::move(after);
     unsaved = true;
@@ -83,16 +93,16 @@ struct Editor::Impl {
     steps = std::min(steps, most);
     if (steps == 0) return 0;
     const std::size_t target = back ? most - steps : history->undoable() + steps;
-    replayer.lend(compiled, surface);
+    replayer.cacheCompiled(compiled, surface);
     Scene scene = history->sceneAt(target);
     std::vector<PaintChange> changes = paintChanges(compiled->scene, scene);
-    const bool same_objects = canRetune(*compiled, scene);
+    const bool same_objects = canReuseField(*compiled, scene);
     auto after = compiledFor(scene, progress);
-    if (link) back ? link->recordUndo(steps) : link->recordRedo(steps);
-    history->place(target, std::move(scene));
+    if (storage) back ? storage->recordUndo(steps) : storage->recordRedo(steps);
+    history->setPosition(target, std::move(scene));
     compiled = std::move(after);
     unsaved = true;
-    tell(same_objects ? std::optional(std::move(changes)) : std::nullopt);
+    notify(same_objects ? std::optional(std::move(changes)) : std::nullopt);
     return steps;
   }
 };
@@ -113,11 +123,17 @@ std::unique_ptr<Editor> Editor::open(const std::filesystem::path& folder, const 
                                      Progress& progress, Listener listener) {
   auto impl = std::make_unique<Impl>();
   impl->listener = std::move(listener);
-  WorkspaceLink::Opened opened =
-      WorkspaceLink::open(folder, impl->replayer, spec.history_budget, spec.own, spec.recover);
+  WorkspaceStorage::Opened opened =
+      WorkspaceStorage::open(folder, impl->replayer, spec.history_budget, spec.own, spec.recover);
   impl->history = std::move(opened.history);
-  impl->link = std::move(opened.link);
+  impl->storage = std::move(opened.storage);
   impl->notes = std::move(opened.notes);
+  for (std::string& line : takeOutputWarnings()) impl->notes.push_back(std::move(line));
+  impl->repeated = opened.intents.contains(spec.intent);
+  if (impl->storage) {
+    impl->storage->setIntent(spec.intent);
+    if (spec.all_or_none) impl->storage->hold();
+  }
   impl->unsaved = opened.unsaved;
   impl->opened_at = opened.saved_at;
   impl->budget = spec.history_budget;
@@ -137,10 +153,13 @@ const EditHistory& Editor::history() const {
 const std::vector<std::string>& Editor::notes() const {
   return impl_->notes;
 }
+bool Editor::isRepeated() const {
+  return impl_->repeated;
+}
 bool Editor::unsaved() const {
   return impl_->unsaved;
 }
-std::optional<std::size_t> Editor::savedBefore() const {
+std::optional<std::size_t> Editor::savedPosition() const {
   return impl_->opened_at;
 }
 bool Editor::inStroke() const {
@@ -161,11 +180,11 @@ void Editor::beginStroke(const Brush& brush, Progress& progress) {
   auto painter = std::make_unique<Painter>(at.surface, at.compiled->scene);
   painter->begin(brush);
   at.before_stroke = at.compiled;
-  // A field that must grow for the stroke is built now, not under its dabs.
-  const FeltReach reach = reachAfter(*at.compiled, brush);
+  // A field that must grow for the stroke is built before its first dab.
+  const InteractionRange reach = reachAfter(*at.compiled, brush);
   if (!fits(*at.compiled, reach)) {
     at.compiled = recompile(*at.compiled, at.compiled->scene, progress, reach);
-    at.tell(std::nullopt);
+    at.notify(std::nullopt);
   }
   at.painter = std::move(painter);
   at.stroke = {brush, {}};
@@ -177,7 +196,7 @@ PaintReport Editor::dab(const StrokeSample& sample) {
   at.require(at.painter != nullptr, "no stroke was begun");
   const StrokeSample kept = recordable(sample, at.stroke);
   const PaintReport report = at.painter->dab(kept);
-  if (isFinite(kept)) at.stroke.samples.push_back(kept); // others paint nothing
+  if (isFinite(kept)) at.stroke.samples.push_back(kept); // other samples paint nothing
   std::vector<PaintChange> changes = at.painter->takeChanges();
   if (changes.empty()) return report;
   at.touched = true;
@@ -185,10 +204,11 @@ PaintReport Editor::dab(const StrokeSample& sample) {
   try {
     at.compiled = at.compiledFor(withPaint(at.compiled->scene, at.painter->paint()), progress);
   } catch (...) {
-    cancelStroke(); // what cannot be felt must not be journaled: no one could open it again
+    // a stroke that cannot be compiled must not be journaled: the file could not be opened again
+    cancelStroke();
     throw;
   }
-  at.tell(std::move(changes));
+  at.notify(std::move(changes));
   return report;
 }
 
@@ -197,7 +217,7 @@ bool Editor::endStroke() {
   at.require(at.painter != nullptr, "no stroke was begun");
   try {
     at.painter->end();
-    if (!at.touched) {
+    if (!at.touched || isUnchanged(at.before_stroke->scene, at.painter->paint())) {
       cancelStroke();
       return false;
     }
@@ -221,7 +241,7 @@ void Editor::cancelStroke() {
       paintChanges(at.compiled->scene, at.before_stroke->scene);
   at.compiled = std::move(at.before_stroke);
   at.before_stroke.reset();
-  if (!changes.empty()) at.tell(changes);
+  if (!changes.empty()) at.notify(changes);
 }
 
 PaintReport Editor::apply(const Stroke& stroke, Progress& progress,
@@ -253,7 +273,7 @@ void Editor::apply(const ValueEdit& edit, Progress& progress) {
   Scene scene = at.compiled->scene;
   setValues(scene, edit.values);
   at.commit(edit, at.compiledFor(std::move(scene), progress));
-  at.tell(std::nullopt);
+  at.notify(std::nullopt);
 }
 
 void Editor::apply(const SceneEdit& edit, Progress& progress) {
@@ -262,7 +282,7 @@ void Editor::apply(const SceneEdit& edit, Progress& progress) {
   at.require(edit.scene != nullptr, "an edit without its scene");
   validate(*edit.scene);
   at.commit(edit, at.compiledFor(*edit.scene, progress));
-  at.tell(std::nullopt);
+  at.notify(std::nullopt);
 }
 
 std::size_t Editor::undo(std::size_t steps, Progress& progress) {
@@ -275,39 +295,44 @@ std::size_t Editor::redo(std::size_t steps, Progress& progress) {
   return impl_->move(steps, false, progress);
 }
 
+void Editor::commit() {
+  impl_->require(impl_->storage != nullptr, "no folder to commit to");
+  impl_->storage->commit();
+}
+
 void Editor::save() {
-  impl_->require(impl_->link != nullptr, "no folder to save into");
-  impl_->replayer.lend(impl_->compiled, impl_->surface);
-  impl_->link->save(*impl_->history);
+  impl_->require(impl_->storage != nullptr, "no folder to save into");
+  impl_->replayer.cacheCompiled(impl_->compiled, impl_->surface);
+  impl_->storage->save(*impl_->history);
   impl_->unsaved = false;
 }
 
-void Editor::saveAs(const std::filesystem::path& folder) {
+void Editor::saveAs(const std::filesystem::path& folder, const std::string& intent) {
   std::error_code code;
-  if (impl_->link && std::filesystem::equivalent(folder, impl_->link->folder(), code))
+  if (impl_->storage && std::filesystem::equivalent(folder, impl_->storage->folder(), code))
     return save();
-  impl_->replayer.lend(impl_->compiled, impl_->surface);
-  impl_->link = WorkspaceLink::create(folder, *impl_->history);
+  impl_->replayer.cacheCompiled(impl_->compiled, impl_->surface);
+  impl_->storage = WorkspaceStorage::create(folder, *impl_->history, intent);
   impl_->unsaved = false;
 }
 
 void Editor::revert(Progress& progress) {
   Impl& at = *impl_;
-  at.require(at.link != nullptr, "no folder to go back to");
+  at.require(at.storage != nullptr, "no folder to go back to");
   at.require(!at.painter, "a stroke is being painted");
-  auto saved = at.compiledFor(loadWorkspace(at.link->folder()), progress);
-  WorkspaceLink::Opened opened = at.link->revert(at.replayer, at.budget);
+  auto saved = at.compiledFor(loadWorkspace(at.storage->folder()), progress);
+  WorkspaceStorage::Opened opened = at.storage->revert(at.replayer, at.budget);
   at.history = std::move(opened.history);
-  at.link = std::move(opened.link);
+  at.storage = std::move(opened.storage);
   at.compiled = std::move(saved);
   at.surface.reset();
   at.unsaved = false;
-  at.tell(std::nullopt);
+  at.notify(std::nullopt);
 }
 
 std::optional<std::filesystem::path> Editor::folder() const {
-  if (!impl_->link) return std::nullopt;
-  return impl_->link->folder();
+  if (!impl_->storage) return std::nullopt;
+  return impl_->storage->folder();
 }
 
 } // namespace patina

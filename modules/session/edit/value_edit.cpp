@@ -19,10 +19,10 @@ const std::string* find(const List& list, const std::string& key) {
 std::optional<ValueEdit> valueEdit(const Scene& before, const Scene& after) {
   const List old = values(before), now = values(after);
   ValueEdit edit;
-  // What goes comes first: the new value of a pair that excludes one another takes its place.
+  // Removed keys come first: a new value replaces its mutually exclusive counterpart.
   for (const auto& [key, value] : old)
     if (!find(now, key) && !(key == "resolution" && find(now, "voxel")))
-      edit.values.emplace_back(key, sceneKey(key).usual);
+      edit.values.emplace_back(key, sceneKey(key).default_value);
   for (const auto& [key, value] : now) {
     const std::string* earlier = find(old, key);
     if (!earlier || *earlier != value) edit.values.emplace_back(key, value);

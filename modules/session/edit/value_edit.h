@@ -1,4 +1,4 @@
-// The values that differ between two scenes, as an edit that can be recorded.
+// Differences of values between two scenes, as an edit that can be recorded.
 #pragma once
 
 #include <optional>
@@ -7,11 +7,11 @@
 
 namespace patina {
 
-// setValues() with it on `before` gives the values of `after`. Nullopt where they are the same.
-// Objects and what is painted on them are no values.
+// setValues() with the result on `before` gives the values of `after`. Nullopt if they are equal.
+// Objects and their paint are not values.
 std::optional<ValueEdit> valueEdit(const Scene& before, const Scene& after);
 
-// What came first and what came then as one edit: of each key the last value.
+// Combines two successive edits: the last value of each key.
 ValueEdit merged(const ValueEdit& first, const ValueEdit& then);
 
 } // namespace patina

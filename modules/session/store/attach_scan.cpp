@@ -12,13 +12,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A line "NAME SIZE" for each entry of the folder, sorted.
+// Sorted lines "NAME SIZE", one per entry of the folder.
 std::string namesAndSizes(const fs::path& folder) {
   std::vector<std::string> lines;
   std::error_code code;
   for (fs::directory_iterator entry(folder, code), end; !code && entry != end;
        entry.increment(code)) {
-    std::error_code none; // an entry that cannot be looked at counts as empty
+    std::error_code none; // an unreadable entry counts as empty
     const auto size = fs::file_size(entry->path(), none);
     lines.push_back(entry->path().filename().string() + " " + std::to_string(none ? 0 : size) +
                     "\n");
@@ -31,9 +31,9 @@ std::string namesAndSizes(const fs::path& folder) {
 
 } // namespace
 
-SceneScan scanIn(const fs::path& folder, const std::string& name) {
+SceneScan readScanFiles(const fs::path& folder, const std::string& name) {
   std::error_code code;
-  if (!fs::is_directory(folder, code)) throw FileError(folder.string(), 0, "is no scan folder");
+  if (!fs::is_directory(folder, code)) throw FileError(folder.string(), 0, "is not a scan folder");
   SceneScan scan;
   scan.name = name;
   for (const ScanFile& file : kScanFiles)
@@ -43,7 +43,7 @@ SceneScan scanIn(const fs::path& folder, const std::string& name) {
   if (!scan.frames.empty()) scan.folder = fs::absolute(folder).lexically_normal();
   if (scan.files.empty())
     throw FileError(folder.string(), 0,
-                    "holds nothing of a scan: no frames.csv, probe.csv, "
+                    "holds no scan: it has no frames.csv, probe.csv, "
                     "poses.tum or path.csv");
   return scan;
 }

@@ -1,20 +1,20 @@
-// Scan folders as scans of a scene.
+// Attaches scan folders to a scene.
 #pragma once
 
 #include "scene/scene_scan.h"
 
 namespace patina {
 
-// What the folder holds of kScanFiles, and which frames. Throws FileError: no folder, nothing of a
-// scan in it, a file that cannot be read.
-SceneScan scanIn(const std::filesystem::path& folder, const std::string& name);
+// Reads which of kScanFiles and which frames the folder holds. Throws FileError: no folder, no scan
+// in it, an unreadable file.
+SceneScan readScanFiles(const std::filesystem::path& folder, const std::string& name);
 
-// SHA-256 over the sorted lines "NAME SIZE" of what lies in the folder; empty: nothing does.
+// SHA-256 over the sorted lines "NAME SIZE" of the folder's entries; "" for an empty folder.
 std::string picturesDigest(const std::filesystem::path& folder);
-// SHA-256 over names and sizes of the frames and their times' table; empty: there are none. Tells
-// another recording or a frame that is missing, not a frame that was retouched to the same size.
+// SHA-256 over names and sizes of the frames and of their table of times; "" without frames.
+// Detects another recording or a missing frame, but no frame edited at the same size.
 std::string framesDigest(const std::filesystem::path& folder);
-// Throws FileError in one line: the folder is gone, or has other frames.
+// Throws FileError with one line if the folder is missing or has other frames.
 void requireFrames(const SceneScan& scan);
 
 } // namespace patina

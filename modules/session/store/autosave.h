@@ -1,4 +1,5 @@
-// Scenes without a folder of their own, kept where a crash leaves them and a clean end does not.
+// Autosave of scenes and recordings without a file of the user's: it survives a crash and is
+// removed at a clean exit.
 #pragma once
 
 #include <filesystem>
@@ -9,25 +10,26 @@
 
 namespace patina {
 
-// $XDG_STATE_HOME/patina, or ~/.local/state/patina.
+// $XDG_STATE_HOME/patina, or ~/.local/state/patina; without HOME the user's own folder in /tmp.
 std::filesystem::path stateFolder();
 
-// One scene's place: a folder locked for as long as this lives. Throws FileError.
+// Folder of one scene or recording, locked while this object lives. Throws FileError.
 class Autosave {
  public:
-  // A new place below `root`, which is made; removed with this.
+  // Makes a new folder below `root`, which must belong to the user; the destructor removes it.
   explicit Autosave(const std::filesystem::path& root);
-  // What another program left behind. It stays when this ends, for the next start to offer it
-  // again, unless own() said that somebody has its scene.
+  // Adopts a folder that another program left behind. The destructor keeps it for the next start,
+  // unless claim() was called for its scene.
   static std::unique_ptr<Autosave> adopt(const std::filesystem::path& place);
   ~Autosave();
   Autosave(const Autosave&) = delete;
   Autosave& operator=(const Autosave&) = delete;
 
-  void own() { removes_ = true; }
-  void leave() { removes_ = false; } // for the next start to offer it
+  void claim() { removes_ = true; }
+  void keepForRecovery() { removes_ = false; } // the next start offers it again
 
-  std::filesystem::path workspace() const; // the folder for the scene; made by whoever saves it
+  std::filesystem::path workspace() const; // the folder for the scene; the first save makes it
+  std::filesystem::path recording() const; // the file for a recording of forces
 
  private:
   struct Existing {};
@@ -37,8 +39,9 @@ class Autosave {
   std::unique_ptr<AppendFile> lock_;
 };
 
-// Places below `root` that hold a workspace and that no program has locked, newest first. Never
-// throws.
-std::vector<std::filesystem::path> leftBehind(const std::filesystem::path& root);
+// Folders below `root` that belong to the user, hold a scene or a recording, and that no program
+// has locked, newest first. Never throws.
+std::vector<std::filesystem::path> recoverableScenes(const std::filesystem::path& root);
+bool holdsRecording(const std::filesystem::path& place); // instead of a scene
 
 } // namespace patina

@@ -1,4 +1,4 @@
-// A journal read to its end: which edits stand, and where the history stands among them.
+// Folds a journal into the edits that are still in the history, and its undo position.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace patina {
 
-// Points into the journal that it was made of.
+// Holds pointers into the journal.
 struct FoldedJournal {
   struct Step {
     const JournalEvent* event = nullptr; // an edit
-    std::uint64_t number = 0;            // of that record, from 1
+    std::uint64_t number = 0;            // number of that record, from 1
   };
-  std::vector<Step> steps;  // those not undone for good
-  std::size_t position = 0; // how many of them are done; the others can be redone
-  // After each record, by its number: the position at that time.
+  std::vector<Step> steps;  // without those undone for good
+  std::size_t position = 0; // number of applied steps; the others can be redone
+  // Position after each record, by its number.
   std::vector<std::size_t> position_at{0};
 };
 
-// Throws FileError(name) for a record that undoes or redoes more than there is.
+// Throws FileError(name) if a record undoes or redoes more steps than there are.
 FoldedJournal folded(const std::vector<JournalEvent>& journal, const std::string& name);
 
 } // namespace patina

@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "field/build/build_field.h"
-#include "haptics/servo/snapshot.h"
+#include "field/construction/build_field.h"
+#include "haptics/law/snapshot.h"
 
 namespace patina {
 
@@ -20,7 +20,7 @@ bool isOn(const SurfaceField& field, const FieldGrid& grid, double band) {
     return field.grid.origin == g.origin && field.grid.voxel == g.voxel &&
            field.grid.nodes == g.nodes;
   };
-  return field.band == band && (is(grid) || is(withRoomForPlates(grid, band)));
+  return field.band == band && (is(grid) || is(paddedForSheets(grid, band)));
 }
 
 Scene plain(const Scene& scene) {
@@ -38,7 +38,7 @@ std::shared_ptr<const PaintSurface> plainSurface(const CompiledScene& compiled, 
   Box3 box;
   const FieldSpec spec = plainSpec(compiled, box);
   const FieldGrid grid = gridAround(box, spec);
-  // Several objects have a joint mesh of their own for each lattice.
+  // Several objects have their own combined mesh for each lattice.
   const bool several = compiled.objects.size() > 1;
   if (earlier && earlier->mesh == compiled.mesh &&
       (several || isOn(*earlier->field, grid, spec.band)))
@@ -67,11 +67,11 @@ bool needsImages(const Brush& brush) {
   return brush.erases.empty() || brush.erases == "color" || brush.erases == "relief";
 }
 
-Replayer::Replayer() : known_(std::make_shared<Known>()) {}
+Replayer::Replayer() : cache_(std::make_shared<Cache>()) {}
 
-void Replayer::lend(std::shared_ptr<const CompiledScene> compiled,
-                    std::shared_ptr<const PaintSurface> surface) {
-  *known_ = {std::move(compiled), std::move(surface)};
+void Replayer::cacheCompiled(std::shared_ptr<const CompiledScene> compiled,
+                             std::shared_ptr<const PaintSurface> surface) {
+  *cache_ = {std::move(compiled), std::move(surface)};
 }
 
 Scene Replayer::operator()(const Scene& before, const Edit& edit) const {
@@ -83,11 +83,11 @@ Scene Replayer::operator()(const Scene& before, const Edit& edit) const {
   const auto* stroke = std::get_if<Stroke>(&edit);
   if (!stroke) throw std::invalid_argument("Replayer: the scene of a SceneEdit was not kept");
   Progress progress;
-  if (!known_->compiled || !canRetune(*known_->compiled, before))
-    *known_ = {compile(before, progress), nullptr};
-  known_->surface = paintSurfaceOf(*known_->compiled, before, std::move(known_->surface),
+  if (!cache_->compiled || !canReuseField(*cache_->compiled, before))
+    *cache_ = {compile(before, progress), nullptr};
+  cache_->surface = paintSurfaceOf(*cache_->compiled, before, std::move(cache_->surface),
                                    needsImages(stroke->brush), progress);
-  return painted(known_->surface, before, *stroke);
+  return painted(cache_->surface, before, *stroke);
 }
 
 } // namespace patina

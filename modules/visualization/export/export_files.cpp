@@ -11,7 +11,6 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkUnsignedCharArray.h>
 
 #include "core/csv.h"
 #include "core/error.h"
@@ -40,24 +39,13 @@ void addCellArray(vtkPolyData* data, const char* name, const std::vector<std::in
 }
 
 std::string escaped(const std::string& text) {
+  constexpr std::pair<char, const char*> kEntities[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   std::string safe;
   for (const char c : text) {
-    switch (c) {
-    case '&':
-      safe += "&amp;";
-      break;
-    case '<':
-      safe += "&lt;";
-      break;
-    case '>':
-      safe += "&gt;";
-      break;
-    case '"':
-      safe += "&quot;";
-      break;
-    default:
-      safe += c;
-    }
+    const auto* entity = std::find_if(std::begin(kEntities), std::end(kEntities),
+                                      [c](const auto& one) { return one.first == c; });
+    entity == std::end(kEntities) ? safe += c : safe += entity->second;
   }
   return safe;
 }
@@ -91,7 +79,7 @@ void writeToolPathVtp(const std::filesystem::path& path, const std::vector<ToolS
   for (const ToolSample& sample : samples)
     lines->InsertCellPoint(points->InsertNextPoint(sample.tip.data()));
   data->SetPoints(points);
-  // VTK reads beyond its cells where a line has one point.
+  // VTK reads past its cells if a line has a single point.
   samples.size() > 1 ? data->SetLines(lines) : data->SetVerts(lines);
   const auto time = pointArray(data, "t [s]", 1);
   const auto force = pointArray(data, "force [N]", 3);
@@ -130,25 +118,17 @@ const std::vector<std::string>& toolSampleColumns() {
 }
 
 std::vector<double> toolSampleRow(const ToolSample& s) {
-  return {s.t,
-          s.tip[0],
-          s.tip[1],
-          s.tip[2],
-          s.force[0],
-          s.force[1],
-          s.force[2],
-          s.contact ? 1.0 : 0.0,
-          s.depth,
-          s.vcp[0],
-          s.vcp[1],
-          s.vcp[2],
-          s.normal[0],
-          s.normal[1],
-          s.normal[2],
-          static_cast<double>(s.step_ns),
-          s.fault ? 1.0 : 0.0,
-          static_cast<double>(s.held),
-          s.snap ? 1.0 : 0.0};
+  std::vector<double> row{s.t};
+  row.reserve(toolSampleColumns().size());
+  const auto add = [&](const Vec3& v) { row.insert(row.end(), v.data(), v.data() + 3); };
+  add(s.tip);
+  add(s.force);
+  row.insert(row.end(), {s.contact ? 1.0 : 0.0, s.depth});
+  add(s.vcp);
+  add(s.normal);
+  row.insert(row.end(), {static_cast<double>(s.step_ns), s.fault ? 1.0 : 0.0,
+                         static_cast<double>(s.constraint_count), s.relocating ? 1.0 : 0.0});
+  return row;
 }
 
 void writeToolSamplesCsv(const std::filesystem::path& path,
@@ -156,6 +136,31 @@ void writeToolSamplesCsv(const std::filesystem::path& path,
   CsvWriter writer(path, toolSampleColumns());
   for (const ToolSample& sample : samples) writer.add(toolSampleRow(sample));
   writer.commit();
+}
+
+std::vector<ToolSample> readToolSamplesCsv(const std::filesystem::path& path) {
+  const std::vector<std::string>& columns = toolSampleColumns();
+  constexpr std::ptrdiff_t kShown = 15; // The others are not drawn.
+  CsvReader reader(
+      path,
+      {{columns.begin(), columns.begin() + kShown}, {}, {columns.begin() + kShown, columns.end()}});
+  std::vector<ToolSample> samples;
+  std::vector<double> row;
+  while (reader.next(row)) {
+    ToolSample s;
+    s.t = row[0];
+    s.tip = Vec3(row[1], row[2], row[3]);
+    s.force = Vec3(row[4], row[5], row[6]);
+    s.contact = row[7] != 0;
+    s.depth = row[8];
+    s.vcp = Vec3(row[9], row[10], row[11]);
+    s.normal = Vec3(row[12], row[13], row[14]);
+    s.surface = s.tip + s.depth * s.normal;
+    if (!samples.empty() && !(s.t >= samples.back().t))
+      throw FileError(path.string(), reader.line(), "the time decreases: not one recording");
+    samples.push_back(s);
+  }
+  return samples;
 }
 
 } // namespace patina

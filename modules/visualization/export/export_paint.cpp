@@ -25,7 +25,7 @@
 namespace patina {
 namespace {
 
-constexpr std::size_t kMostExported = 500'000;
+constexpr std::size_t kMaxExported = 500'000;
 
 vtkSmartPointer<vtkDoubleArray> values(PaintQuantity quantity, vtkIdType count) {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
@@ -34,7 +34,7 @@ vtkSmartPointer<vtkDoubleArray> values(PaintQuantity quantity, vtkIdType count) 
   return array;
 }
 
-// A texel's side on the surface, were the image all used.
+// Side of a texel on the surface if the whole image is used [m].
 double texelSide(const TriangleMesh& mesh, const TiledImage& image) {
   return std::sqrt(area(mesh) / (static_cast<double>(image.width()) * image.height()));
 }
@@ -47,14 +47,14 @@ RefinedSurface fineSurface(const SceneObject& object) {
   for (const auto& image : {paint.color, paint.relief})
     if (image && paint.layout.uvs) edge = std::min(edge, texelSide(mesh, *image));
   if (paint.material) edge = std::min(edge, paint.material->voxel());
-  return refined(mesh, edge > 0 ? edge : 1, kMostExported);
+  return refined(mesh, edge > 0 ? edge : 1, kMaxExported);
 }
 
-// A vertex of the surface, once for each place that it has in the image.
+// Surface vertices, repeated for each of their texture coordinates.
 struct Points {
   std::vector<std::int32_t> vertex;
   std::vector<Vec2> uv;
-  std::vector<std::int32_t> of_corner; // 3 a triangle
+  std::vector<std::int32_t> of_corner; // 3 per triangle
 };
 
 Points pointsOf(const TriangleMesh& mesh) {
@@ -202,7 +202,7 @@ void writeMaterialVti(const std::filesystem::path& path, const Scene& scene, std
         const Index3 node =
             BlockNode{{index[0] - low[0], index[1] - low[1], index[2] - low[2]}, n}.at();
         array->SetValue((node[2] * nodes[1] + node[1]) * nodes[0] + node[0],
-                        feltAt(*layer, n, own, rangeOf(channel)));
+                        compositedAt(*layer, n, own, rangeOf(channel)));
       }
     }
     image->GetPointData()->AddArray(array);

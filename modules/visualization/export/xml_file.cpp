@@ -15,7 +15,8 @@ void write(const std::filesystem::path& path, vtkXMLWriter& writer, const char* 
   writer.SetDataModeToAppended();
   writer.EncodeAppendedDataOff();
   writer.SetCompressorTypeToZLib();
-  writer.SetCompressionLevel(2); // a fifth larger than the default, four times as fast
+  // files are a fifth larger than by default and four times as fast to write
+  writer.SetCompressionLevel(2);
   writer.WriteToOutputStringOn();
   if (writer.Write() == 0)
     throw FileError(path.string(), 0, std::string("cannot be encoded as ") + format);

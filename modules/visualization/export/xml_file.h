@@ -1,4 +1,4 @@
-// VTK's XML files, written atomically and quickly. All throw FileError.
+// Writes VTK's XML files atomically and quickly. All functions throw FileError.
 #pragma once
 
 #include <filesystem>

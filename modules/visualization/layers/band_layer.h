@@ -1,4 +1,4 @@
-// The edge of the offset's or magnet's band as a shell that one sees through, and what it is.
+// Draws the band in which an offset or a magnet acts.
 #pragma once
 
 #include <vtkActor.h>
@@ -6,23 +6,27 @@
 #include <vtkSmartPointer.h>
 #include <vtkTextActor.h>
 
-#include "field/store/surface_field.h"
-#include "visualization/values/lettering.h"
+#include "visualization/values/text_style.h"
 #include "visualization/values/touch_band.h"
 
 namespace patina {
 
+// Outer edge of the offset's or magnet's band as a translucent shell, with a legend.
 class BandLayer {
  public:
-  // scene: where the shell is; overlay: where the legend is.
+  // scene: renderer of the shell; overlay: renderer of the legend.
   BandLayer(vtkRenderer& scene, vtkRenderer& overlay);
 
-  // A band that the field does not hold has a legend that says so, and no shell.
+  // The shell is absent where the field does not contain the band; the legend then gives the
+  // reason.
   void update(const SurfaceField& field, const TouchBand& band);
-  // The legend alone goes with the tint of a slice.
-  void setVisible(bool shell, bool legend);
-  void setLettering(const Lettering& letters);
-  vtkActor& shell() { return *shell_; } // to be cut by the slice
+  // The legend alone belongs to the tint of a slice.
+  void setVisible(bool shell, bool legend) {
+    shell_->SetVisibility(shell);
+    legend_->SetVisibility(legend);
+  }
+  void setTextStyle(const TextStyle& letters);
+  vtkActor& shell() { return *shell_; } // the slice cuts it
 
  private:
   vtkSmartPointer<vtkActor> shell_;

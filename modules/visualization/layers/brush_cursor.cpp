@@ -35,8 +35,8 @@ vtkSmartPointer<vtkActor> actorOf(vtkPolyData* data, const palette::Color& color
   return actor;
 }
 
-// Down to the surface from a radius above the tangent plane, as far as a radius below it.
-Vec3 laidDown(const Vec3& flat, const BrushPlace& place, const SurfaceField* field) {
+// Projects a point down to the surface, from a radius above the tangent plane to a radius below it.
+Vec3 laidDown(const Vec3& flat, const BrushCursorState& place, const SurfaceField* field) {
   if (field == nullptr) return flat;
   const Vec3 above = flat + place.radius * place.normal;
   const auto hit = firstSurfaceAlong(*field, above, -place.normal);
@@ -50,7 +50,6 @@ BrushCursor::BrushCursor(vtkRenderer& overlay)
       disc_(vtkSmartPointer<vtkPolyData>::New()),
       dark_(actorOf(rings_, palette::kContactPoint, 4, 1, 0)),
       light_(actorOf(rings_, {1, 1, 1}, 1.8, 1, -4)), fill_(actorOf(disc_, {1, 1, 1}, 1, 0.22, 0)) {
-  // The rim, the ring of half weight, and the centre.
   points_->SetNumberOfPoints(2 * kSides + 1);
   const vtkNew<vtkCellArray> lines, triangles;
   for (int ring = 0; ring < 2; ++ring) {
@@ -74,7 +73,7 @@ BrushCursor::BrushCursor(vtkRenderer& overlay)
   for (const auto& actor : {fill_, dark_, light_}) overlay.AddActor(actor);
 }
 
-void BrushCursor::update(const std::optional<BrushPlace>& place, const SurfaceField* field) {
+void BrushCursor::update(const std::optional<BrushCursorState>& place, const SurfaceField* field) {
   const bool shown = place && place->radius > 0 && place->centre.allFinite();
   for (const auto& actor : {fill_, dark_, light_}) actor->SetVisibility(shown);
   if (!shown) return;

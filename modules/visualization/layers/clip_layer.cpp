@@ -12,29 +12,29 @@
 
 #include "core/decompose.h"
 #include "visualization/surfaces/precise_points.h"
-#include "visualization/view/scene_furniture.h"
+#include "visualization/values/scene_setup.h"
 
 namespace patina {
 namespace {
 
-// Of the arrow's length.
+// Fractions of the arrow's length.
 constexpr double kHead = 0.26, kHeadRadius = 0.10, kShaftRadius = 0.022, kBallRadius = 0.09;
-constexpr double kNear = 0.12;    // from its axis it is still held
-constexpr double kPicture = 0.40; // its length, of half the picture's height
-constexpr double kEndOn = 0.94;   // cosine to the line of sight
+constexpr double kNear = 0.12;    // max distance from an axis at which the normal snaps to it
+constexpr double kPicture = 0.40; // arrow length in halves of the picture's height
+constexpr double kEndOn = 0.94; // cosine to the view ray above which the arrow points at the viewer
 const double kSnap = std::cos(4 * M_PI / 180);
 
-// Of the line through the plane's origin along its normal: the place nearest to the sight.
-double alongNormal(const ClipPlane& plane, const Ray& sight) {
-  const Vec3 off = plane.origin - sight.origin;
-  const double slant = plane.normal.dot(sight.direction);
-  return (slant * off.dot(sight.direction) - off.dot(plane.normal)) /
+// Parameter along the plane's normal through its origin that is nearest to the view ray.
+double alongNormal(const ClipPlane& plane, const Ray& view_ray) {
+  const Vec3 off = plane.origin - view_ray.origin;
+  const double slant = plane.normal.dot(view_ray.direction);
+  return (slant * off.dot(view_ray.direction) - off.dot(plane.normal)) /
          std::max(1e-9, 1 - slant * slant);
 }
 
-double distanceTo(const Ray& sight, const Vec3& point) {
-  const Vec3 off = point - sight.origin;
-  return (off - off.dot(sight.direction) * sight.direction).norm();
+double distanceTo(const Ray& view_ray, const Vec3& point) {
+  const Vec3 off = point - view_ray.origin;
+  return (off - off.dot(view_ray.direction) * view_ray.direction).norm();
 }
 
 Vec3 snapped(const Vec3& normal) {
@@ -45,14 +45,12 @@ Vec3 snapped(const Vec3& normal) {
 }
 
 vtkSmartPointer<vtkActor> handleActor(vtkPolyDataAlgorithm& source) {
-  source.Update();
-  auto actor = surfaceActor(palette::kIso);
-  vtkPolyDataMapper::SafeDownCast(actor->GetMapper())->SetInputData(source.GetOutput());
+  auto actor = surfaceActor(source, palette::kIso);
   actor->GetProperty()->SetAmbient(0.4);
   return actor;
 }
 
-// Corners of the part of the plane that is within the box, one after another.
+// Corners, in order, of the part of the plane inside the box.
 std::vector<Vec3> rimOf(const ClipPlane& plane, const Box3& box) {
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i)
@@ -78,11 +76,12 @@ std::vector<Vec3> rimOf(const ClipPlane& plane, const Box3& box) {
 
 } // namespace
 
-std::optional<ClipPart> clipPartAt(const ClipPlane& plane, double length, const Ray& sight) {
-  const double along = std::clamp(alongNormal(plane, sight), 0., length);
-  if (distanceTo(sight, plane.origin + length * plane.normal) < kNear * length)
+std::optional<ClipPart> clipPartAt(const ClipPlane& plane, double length, const Ray& view_ray) {
+  const double along = std::clamp(alongNormal(plane, view_ray), 0., length);
+  if (distanceTo(view_ray, plane.origin + length * plane.normal) < kNear * length)
     return ClipPart::tilt;
-  if (distanceTo(sight, plane.origin + along * plane.normal) > kNear * length) return std::nullopt;
+  if (distanceTo(view_ray, plane.origin + along * plane.normal) > kNear * length)
+    return std::nullopt;
   return along > (1 - kHead) * length ? ClipPart::tilt : ClipPart::shift;
 }
 
@@ -91,7 +90,7 @@ ClipPlane clipShifted(const ClipPlane& plane, const Ray& from, const Ray& to, co
   if (std::abs(plane.normal.dot(to.direction)) < kEndOn) {
     moved = alongNormal(plane, to) - alongNormal(plane, from);
   } else {
-    const auto through = [&](const Ray& ray) { // of the plane's own depth
+    const auto through = [&](const Ray& ray) { // at the plane's depth
       const double depth = (plane.origin - ray.origin).dot(ray.direction);
       return Vec3(ray.origin + depth * ray.direction);
     };
@@ -101,7 +100,8 @@ ClipPlane clipShifted(const ClipPlane& plane, const Ray& from, const Ray& to, co
 }
 
 ClipPlane clipTilted(const ClipPlane& plane, double length, const Ray& to) {
-  // Where the sight meets the ball that the head moves on; beside it, the ball's rim.
+  // Intersection of the view ray with the sphere of the arrow's head, or the sphere's silhouette if
+  // it misses.
   const Vec3 off = to.origin - plane.origin;
   const double middle = -off.dot(to.direction);
   const Vec3 nearest = off + middle * to.direction;
@@ -111,12 +111,12 @@ ClipPlane clipTilted(const ClipPlane& plane, double length, const Ray& to) {
   return {plane.origin, snapped(head.normalized())};
 }
 
-std::optional<Ray> behind(const ClipPlane& plane, const Ray& sight) {
-  const double ahead = (sight.origin - plane.origin).dot(plane.normal);
-  if (ahead <= 0) return sight;
-  const double falls = -sight.direction.dot(plane.normal);
+std::optional<Ray> behind(const ClipPlane& plane, const Ray& view_ray) {
+  const double ahead = (view_ray.origin - plane.origin).dot(plane.normal);
+  if (ahead <= 0) return view_ray;
+  const double falls = -view_ray.direction.dot(plane.normal);
   if (!(falls > 1e-12)) return std::nullopt;
-  return Ray{sight.origin + ahead / falls * sight.direction, sight.direction};
+  return Ray{view_ray.origin + ahead / falls * view_ray.direction, view_ray.direction};
 }
 
 ClipLayer::ClipLayer(vtkRenderer& scene, vtkRenderer& overlay, const ClipPlane& plane)
@@ -127,7 +127,7 @@ ClipLayer::ClipLayer(vtkRenderer& scene, vtkRenderer& overlay, const ClipPlane& 
   rim_->SetMapper(mapper);
   rim_->GetProperty()->LightingOff();
   rim_->GetProperty()->SetLineWidth(1.5);
-  // Along y, of length 1, as VTK's cylinder is.
+  // Along y with length 1, as VTK's cylinder.
   const vtkNew<vtkSphereSource> ball;
   ball->SetRadius(kBallRadius);
   ball->SetThetaResolution(24);
@@ -172,17 +172,21 @@ double ClipLayer::length() const {
   return kPicture * half;
 }
 
-void ClipLayer::setHot(const std::optional<ClipPart>& part) {
+void ClipLayer::setHighlighted(const std::optional<ClipPart>& part) {
   const auto color = [&](ClipPart of) { return part == of ? palette::kTool : palette::kIso; };
   for (const auto& actor : {ball_, shaft_})
     actor->GetProperty()->SetColor(palette::forVtk(color(ClipPart::shift)));
   head_->GetProperty()->SetColor(palette::forVtk(color(ClipPart::tilt)));
 }
 
-void ClipLayer::prepare(const Box3& box, const palette::Ground& ground) {
+void ClipLayer::showHandle(bool on) {
+  for (const auto& actor : {ball_, shaft_, head_}) actor->SetVisibility(on);
+}
+
+void ClipLayer::prepare(const Box3& box, const palette::BackgroundStyle& ground) {
   const double size = length();
   Pose handle = Pose::Identity();
-  handle.linear() = size * turnFromTo(Vec3::UnitY(), plane_.normal).toRotationMatrix();
+  handle.linear() = size * rotationFromTo(Vec3::UnitY(), plane_.normal).toRotationMatrix();
   handle.translation() = plane_.origin;
   for (const auto& actor : {ball_, shaft_, head_}) place(*actor, handle);
   const auto points = precisePoints();

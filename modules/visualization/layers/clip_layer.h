@@ -1,5 +1,5 @@
-// A plane at any angle that cuts away what lies ahead of it, with a handle: a ball and an arrow
-// along its normal. The ball or the shaft shifts the plane, the arrow's head tilts it.
+// A clip plane at any angle that hides everything in front of it, with a handle: a ball and an
+// arrow along its normal. The ball or the shaft shifts the plane, the arrow's head tilts it.
 #pragma once
 
 #include <optional>
@@ -11,33 +11,33 @@
 #include <vtkSmartPointer.h>
 
 #include "core/types.h"
+#include "visualization/values/camera.h"
 #include "visualization/values/palette.h"
-#include "visualization/view/camera.h"
 
 namespace patina {
 
 struct ClipPlane {
   Vec3 origin = Vec3::Zero();
-  Vec3 normal = Vec3::UnitZ(); // unit, towards what is cut away
+  Vec3 normal = Vec3::UnitZ(); // unit, towards the hidden side
   bool operator==(const ClipPlane&) const = default;
 };
 
 enum class ClipPart { shift, tilt };
 
-// Part of the handle, an arrow of that length, that a line of sight meets.
-std::optional<ClipPart> clipPartAt(const ClipPlane& plane, double length, const Ray& sight);
-// What is held on the sight `from` goes to `to`. Where the arrow points at the viewer, upwards in
-// the picture is along it: `up` is unit.
+// Returns the part of the handle, an arrow of this length, that a view ray hits.
+std::optional<ClipPart> clipPartAt(const ClipPlane& plane, double length, const Ray& view_ray);
+// Shifts the plane so that the point grabbed on ray `from` moves to ray `to`. If the arrow points
+// at the viewer, a move upwards in the picture (`up`, unit) counts.
 ClipPlane clipShifted(const ClipPlane& plane, const Ray& from, const Ray& to, const Vec3& up);
-// The arrow's head goes to the sight; near an axis it stays on that.
+// Moves the arrow's head to the view ray; near an axis it snaps to that.
 ClipPlane clipTilted(const ClipPlane& plane, double length, const Ray& to);
 
-// Where a line of sight begins once what is ahead of the plane is gone. Nullopt: nothing is left.
-std::optional<Ray> behind(const ClipPlane& plane, const Ray& sight);
+// Returns the part of the view ray behind the plane. Nullopt: nothing is left.
+std::optional<Ray> behind(const ClipPlane& plane, const Ray& view_ray);
 
 class ClipLayer {
  public:
-  // scene: where the plane's rim is; overlay: where the handle is. Both outlive it.
+  // scene: renderer of the outline; overlay: renderer of the handle. Both outlive it.
   ClipLayer(vtkRenderer& scene, vtkRenderer& overlay, const ClipPlane& plane);
   ~ClipLayer();
   ClipLayer(const ClipLayer&) = delete;
@@ -45,11 +45,12 @@ class ClipLayer {
 
   void set(const ClipPlane& plane);
   const ClipPlane& plane() const { return plane_; }
-  double length() const; // of the arrow [m], as large as it looks
-  void setHot(const std::optional<ClipPart>& part);
-  // Before a render: the rim lies within the box.
-  void prepare(const Box3& box, const palette::Ground& ground);
-  vtkPlane& cut() { return *cut_; } // keeps what is behind
+  double length() const; // arrow length [m], constant in the picture
+  void setHighlighted(const std::optional<ClipPart>& part);
+  void showHandle(bool on);
+  // Call before a render. The outline lies within the box.
+  void prepare(const Box3& box, const palette::BackgroundStyle& ground);
+  vtkPlane& cut() { return *cut_; } // keeps the part behind
 
  private:
   vtkRenderer& scene_;

@@ -1,27 +1,23 @@
 #include "visualization/layers/handle_layer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <vtkArrowSource.h>
-#include <vtkCamera.h>
-#include <vtkPolyData.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRegularPolygonSource.h>
 #include <vtkSphereSource.h>
 
-#include "visualization/surfaces/surface_data.h"
-#include "visualization/values/palette.h"
-#include "visualization/view/camera.h"
-#include "visualization/view/scene_furniture.h"
+#include "visualization/values/camera.h"
+#include "visualization/values/scene_setup.h"
 
 namespace patina {
 namespace {
 
-constexpr double kArrow = 1.45, kBall = 0.12;  // of the rings' radius
-constexpr double kReach = 0.14;                // from a line that is held
-constexpr double kShare = 0.34;                // radius, of half the picture's height
-constexpr double kEdgeOn = 0.7, kHidden = 0.9; // cosines between axis and line of sight
+constexpr double kArrow = 1.45, kBall = 0.12;  // in radii of the rings
+constexpr double kReach = 0.14;                // max distance for picking, in radii
+constexpr double kShare = 0.34;                // radius in halves of the picture's height
+constexpr double kEdgeOn = 0.7, kHidden = 0.9; // cosines between axis and view ray
 
 bool turns(HandlePart part) {
   return part >= HandlePart::turn_x;
@@ -37,17 +33,15 @@ double distanceFromSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - t * way).norm();
 }
 
-// Where a ring that is seen edge on lies in the plane.
+// Direction of a ring seen edge-on, in the view plane.
 Vec3 edgeOf(const Vec3& axis, const Vec3& back) {
   const Vec3 along = axis.cross(back);
-  // Against the arrow beside which it lies, whichever axis that is.
+  // Opposite to the arrow that it would cover.
   return along.sum() > 0 ? Vec3(-along.normalized()) : Vec3(along.normalized());
 }
 
 vtkSmartPointer<vtkActor> partActor(vtkPolyDataAlgorithm& source, const palette::Color& color) {
-  source.Update();
-  auto actor = surfaceActor(color);
-  vtkPolyDataMapper::SafeDownCast(actor->GetMapper())->SetInputData(source.GetOutput());
+  auto actor = surfaceActor(source, color);
   actor->GetProperty()->SetLineWidth(3);
   actor->GetProperty()->SetAmbient(0.5);
   return actor;
@@ -101,7 +95,7 @@ Pose handleMotion(const HandleView& view, HandlePart part, const Vec3& from, con
     angle = std::atan2(a.cross(b).dot(view.back), a.dot(b));
     if (axis.dot(view.back) < 0) angle = -angle;
   } else {
-    // The ring's nearest point goes along with the hand.
+    // The nearest point of the ring follows the pointer.
     const Vec3 tangent = axis.cross(view.back);
     angle = moved.dot(tangent) / (view.radius * tangent.squaredNorm());
   }
@@ -142,12 +136,12 @@ void HandleLayer::setPlace(const std::optional<Vec3>& middle) {
   for (const auto& part : parts_) part->SetVisibility(middle.has_value());
 }
 
-void HandleLayer::setHot(std::optional<HandlePart> part) {
+void HandleLayer::setHighlighted(std::optional<HandlePart> part) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const bool hot = part && static_cast<std::size_t>(*part) == i;
+    const bool hovered = part && static_cast<std::size_t>(*part) == i;
     const palette::Color& plain = i == 0 ? palette::kToolShaft : kAxisColors[(i - 1) % 3];
-    parts_[i]->GetProperty()->SetColor(palette::forVtk(hot ? palette::kTool : plain));
-    parts_[i]->GetProperty()->SetLineWidth(hot ? 5 : 3);
+    parts_[i]->GetProperty()->SetColor(palette::forVtk(hovered ? palette::kTool : plain));
+    parts_[i]->GetProperty()->SetLineWidth(hovered ? 5 : 3);
   }
 }
 

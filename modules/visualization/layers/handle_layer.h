@@ -1,5 +1,5 @@
-// A handle to shift and turn something by: three arrows, three rings about them and a ball between,
-// which look as large from everywhere. World axes; a picture without perspective.
+// Handle for moving and rotating something: three arrows, three rings and a ball, along the world
+// axes, at constant size in the picture. For pictures without perspective.
 #pragma once
 
 #include <array>
@@ -15,28 +15,29 @@ namespace patina {
 
 enum class HandlePart { free, shift_x, shift_y, shift_z, turn_x, turn_y, turn_z };
 
-// A line of sight onto a handle: `back` is unit, towards the viewer.
+// View of a handle: `back` is unit, towards the viewer.
 struct HandleView {
   Vec3 middle = Vec3::Zero(), back = Vec3::UnitZ();
-  double radius = 1; // of its rings [m]
+  double radius = 1; // radius of the rings [m]
 };
-// What is held there: a point of the plane through the middle that faces the viewer. Nullopt:
-// nothing is that near. A ring that is seen edge on is half a line, on the far side of its arrow.
+// Returns the part of the handle at a point of the plane through the middle that faces the viewer.
+// Nullopt: nothing is near enough. A ring seen edge-on counts as the half on the far side of its
+// arrow.
 std::optional<HandlePart> partAt(const HandleView& view, const Vec3& point);
-// What brings the part that is held at `from` to `to`, points of the same plane.
+// Motion that moves the part grabbed at `from` to `to`, both points of that plane.
 Pose handleMotion(const HandleView& view, HandlePart part, const Vec3& from, const Vec3& to);
 
 class HandleLayer {
  public:
-  explicit HandleLayer(vtkRenderer& overlay); // which outlives it
+  explicit HandleLayer(vtkRenderer& overlay); // it outlives this layer
   void setPlace(const std::optional<Vec3>& middle);
-  void setHot(std::optional<HandlePart> part); // is drawn brighter
-  void prepare();                              // before a render: its size and what can be held
-  std::optional<HandleView> view() const;      // nullopt: it is not there
+  void setHighlighted(std::optional<HandlePart> part); // draws the part brighter
+  void prepare();                         // call before a render: updates its size and view
+  std::optional<HandleView> view() const; // nullopt: hidden
 
  private:
   vtkRenderer& overlay_;
-  std::array<vtkSmartPointer<vtkActor>, 7> parts_; // by HandlePart
+  std::array<vtkSmartPointer<vtkActor>, 7> parts_; // index: HandlePart
   std::optional<Vec3> middle_;
 };
 

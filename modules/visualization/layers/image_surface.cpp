@@ -1,23 +1,33 @@
 #include "visualization/layers/image_surface.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <numeric>
 
-#include <vtkPolyDataMapper.h>
+#include <vtkFloatArray.h>
+#include <vtkPointData.h>
 #include <vtkProperty.h>
 #include <vtkShaderProperty.h>
 
 #include "scene/relief_slope.h"
+#include "visualization/surfaces/refined_surface.h"
 #include "visualization/surfaces/surface_data.h"
-#include "visualization/values/palette.h"
-#include "visualization/view/scene_furniture.h"
 
 namespace patina {
 namespace {
 
-// Turns the normal as displacement along it by the relief would: n - grad h. Decodes
+// Max edge length. A brush covers several voxels, so linear interpolation at this size is accurate;
+// finer triangles would take too long per frame with software OpenGL.
+constexpr double kEdgeVoxels = 2;
+constexpr std::size_t kMaxShown = 150'000;
+
+// The value of a node extends one voxel to each side.
+Box3 reachOf(const MaterialMap& map, const MaterialMap::Index& block) {
+  const Vec3 first(kMaterialSide * block[0], kMaterialSide * block[1], kMaterialSide * block[2]);
+  return Box3(map.origin() + map.voxel() * (first - Vec3::Ones()),
+              map.origin() + map.voxel() * (first + Vec3::Constant(kMaterialSide)));
+}
+
+// Shades relief by tilting the normal as its displacement would: n - grad h. Decodes
 // encodedSlope().
 constexpr const char* kSlopeName = "reliefSlope";
 constexpr const char* kSlopeShader =
@@ -65,12 +75,104 @@ TexelBox boxOf(const TiledImage& image, std::size_t tile, int margin) {
 
 } // namespace
 
+std::optional<std::vector<Box3>> changedPlaces(const MaterialMap* before, const MaterialMap& now,
+                                               MaterialChannel channel) {
+  if (before == nullptr || before->origin() != now.origin() || before->voxel() != now.voxel())
+    return std::nullopt;
+  std::vector<Box3> places;
+  const auto c = static_cast<std::size_t>(channel);
+  const auto check = [&](const MaterialMap& these, const MaterialMap& others, bool both) {
+    for (const auto& [index, block] : these.blocks()) {
+      const MaterialLayer* other = others.layer(index, channel);
+      if (block.layer[c].get() == other || (other != nullptr && !both)) continue;
+      places.push_back(reachOf(now, index));
+    }
+  };
+  check(now, *before, true);
+  check(*before, now, false); // blocks that were removed
+  return places;
+}
+
+MaterialSurface::MaterialSurface() : actor_(surfaceActor(palette::kSurface)) {
+  vtkPolyDataMapper& mapper = mapperOf(*actor_);
+  mapper.ScalarVisibilityOn();
+  mapper.UseLookupTableScalarRangeOn();
+  mapper.InterpolateScalarsBeforeMappingOn();
+  // Specular light would change colours that are read against a scale.
+  actor_->GetProperty()->SetSpecular(0);
+  actor_->GetProperty()->SetAmbient(0.3);
+}
+
+void MaterialSurface::set(const SceneObject& object, const Material& base) {
+  if (object.mesh != mesh_) {
+    mesh_ = object.mesh;
+    fineness_ = 0;
+  }
+  map_ = object.paint->material;
+  base_ = base;
+  place(*actor_, object.world_from_object);
+}
+
+ValueRange MaterialSurface::prepare(MaterialChannel channel) {
+  const double base = valueOf(base_, channel);
+  if (fineness_ != map_->voxel()) {
+    fineness_ = map_->voxel();
+    const RefinedSurface fine = refined(*mesh_, kEdgeVoxels * fineness_, kMaxShown);
+    std::vector<std::int32_t> vertex;
+    const auto data = surfaceData(fine.mesh, fine.normals, vertex);
+    points_.clear();
+    for (const std::int32_t v : vertex)
+      points_.push_back(fine.mesh.positions[static_cast<std::size_t>(v)]);
+    const vtkNew<vtkFloatArray> values;
+    values->SetNumberOfValues(static_cast<vtkIdType>(points_.size()));
+    data->GetPointData()->SetScalars(values);
+    mapperOf(*actor_).SetInputData(data);
+    shown_ = nullptr;
+  }
+  const bool same_kind = shown_ != nullptr && channel_ == channel && shown_base_ == base;
+  if (same_kind && shown_ == map_) return range_;
+  const auto places = same_kind ? changedPlaces(shown_.get(), *map_, channel) : std::nullopt;
+  if (!same_kind) range_ = {base, base};
+  evaluate(channel, places ? &*places : nullptr);
+  shown_ = map_;
+  channel_ = channel;
+  shown_base_ = base;
+  return range_;
+}
+
+std::vector<float> MaterialSurface::values() const {
+  const auto* values =
+      vtkFloatArray::SafeDownCast(mapperOf(*actor_).GetInput()->GetPointData()->GetScalars());
+  const float* first = const_cast<vtkFloatArray*>(values)->GetPointer(0);
+  return {first, first + points_.size()};
+}
+
+void MaterialSurface::evaluate(MaterialChannel channel, const std::vector<Box3>* places) {
+  Box3 all;
+  if (places != nullptr)
+    for (const Box3& place : *places) all.extend(place);
+  auto* values =
+      vtkFloatArray::SafeDownCast(mapperOf(*actor_).GetInput()->GetPointData()->GetScalars());
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    if (places != nullptr && (!all.contains(points_[p]) ||
+                              std::none_of(places->begin(), places->end(), [&](const Box3& place) {
+                                return place.contains(points_[p]);
+                              })))
+      continue;
+    const double value = valueOf(map_->at(points_[p], base_), channel);
+    range_ = {std::min(range_.low, value), std::max(range_.high, value)};
+    values->SetValue(static_cast<vtkIdType>(p), static_cast<float>(value));
+  }
+  values->Modified();
+  mapperOf(*actor_).GetInput()->Modified();
+}
+
 std::vector<std::size_t> changedTiles(const TiledImage* before, const TiledImage& now) {
   std::vector<std::size_t> tiles;
-  const bool alike = before != nullptr && before->width() == now.width() &&
-                     before->height() == now.height() && before->channels() == now.channels();
+  const bool same_size = before != nullptr && before->width() == now.width() &&
+                         before->height() == now.height() && before->channels() == now.channels();
   for (std::size_t tile = 0; tile < now.tileCount(); ++tile)
-    if (!alike || before->tile(tile) != now.tile(tile)) tiles.push_back(tile);
+    if (!same_size || before->tile(tile) != now.tile(tile)) tiles.push_back(tile);
   return tiles;
 }
 
@@ -82,7 +184,7 @@ ImageSurface::ImageSurface()
   inner->SetSpecular(0);
   actor_->SetBackfaceProperty(inner);
   vtkProperty* property = actor_->GetProperty();
-  property->SetColor(1, 1, 1); // the texture has the object's own colour in it
+  property->SetColor(1, 1, 1); // the texture contains the object's own colour
   property->ShowTexturesOnBackfaceOff();
   actor_->SetTexture(ink_texture_);
 }
@@ -96,7 +198,7 @@ void ImageSurface::set(const SceneObject& object, double height,
     texels_ = nullptr;
     ink_image_ = slope_image_ = height_image_ = nullptr;
     least_ = most_ = 0;
-    vtkPolyDataMapper::SafeDownCast(actor_->GetMapper())->SetInputData(texturedData(*mesh_, *uvs_));
+    mapperOf(*actor_).SetInputData(texturedData(*mesh_, *uvs_));
   }
   if (texels) texels_ = std::move(texels);
   place(*actor_, object.world_from_object);
@@ -121,7 +223,7 @@ ValueRange ImageSurface::heights() {
 void ImageSurface::prepare(PaintQuantity quantity, vtkLookupTable* colors) {
   drawInk(quantity, colors);
   drawSlope();
-  // Shine would shift colours that are read against a scale.
+  // Specular light would change colours that are read against a scale.
   const bool read = quantity == PaintQuantity::relief;
   actor_->GetProperty()->SetSpecular(read ? 0 : 0.16);
   actor_->GetProperty()->SetAmbient(read ? 0.3 : 0.16);
@@ -132,9 +234,9 @@ void ImageSurface::drawInk(PaintQuantity quantity, vtkLookupTable* colors) {
   const Image& image = relief ? paint_->relief : paint_->color;
   const vtkMTimeType colors_time = relief ? colors->GetMTime() : 0;
   const double height = relief ? height_ : 0;
-  const bool anew =
+  const bool is_outdated =
       quantity != ink_of_ || colors_time != colors_time_ || height != ink_height_ || !ink_image_;
-  if (!anew && image == ink_image_) return;
+  if (!is_outdated && image == ink_image_) return;
   const int width = image ? image->width() : 2, rows = image ? image->height() : 2;
   if (!fits(*ink_, width, rows)) {
     ink_ = texture(width, rows, 4);
@@ -147,7 +249,7 @@ void ImageSurface::drawInk(PaintQuantity quantity, vtkLookupTable* colors) {
   if (!image)
     for (int t = 0; t < 4; ++t) std::memcpy(texels + 4 * t, ground.data(), 4);
   else
-    for (const std::size_t tile : changedTiles(anew ? nullptr : ink_image_.get(), *image)) {
+    for (const std::size_t tile : changedTiles(is_outdated ? nullptr : ink_image_.get(), *image)) {
       const float* value = image->tile(tile);
       const TexelBox box = boxOf(*image, tile, 0);
       for (int j = box.j0; j < box.j1; ++j) {

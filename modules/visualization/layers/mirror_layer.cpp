@@ -26,7 +26,7 @@ vtkSmartPointer<vtkActor> flatActor(vtkPoints& points, bool filled) {
 
 } // namespace
 
-MirrorLayer::MirrorLayer(vtkRenderer& scene, const MirrorPlace& place) : scene_(scene) {
+MirrorLayer::MirrorLayer(vtkRenderer& scene, const MirrorState& place) : scene_(scene) {
   const auto points = precisePoints();
   for (const Vec3& corner : place) points->InsertNextPoint(corner.data());
   fill_ = flatActor(*points, true);
@@ -43,7 +43,7 @@ MirrorLayer::~MirrorLayer() {
   scene_.RemoveActor(rim_);
 }
 
-void MirrorLayer::setGround(const palette::Ground& ground) {
+void MirrorLayer::setBackgroundStyle(const palette::BackgroundStyle& ground) {
   rim_->GetProperty()->SetColor(palette::forVtk(ground.shaft));
 }
 

@@ -1,4 +1,4 @@
-// The plane across which a stroke is mirrored, seen through.
+// Translucent mirror plane of a stroke.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@
 
 namespace patina {
 
-using MirrorPlace = std::array<Vec3, 4>; // its corners, one after another [m], world
+using MirrorState = std::array<Vec3, 4>; // corners in order [m], world
 
 class MirrorLayer {
  public:
-  MirrorLayer(vtkRenderer& scene, const MirrorPlace& place); // which outlives it
+  MirrorLayer(vtkRenderer& scene, const MirrorState& place); // it outlives this layer
   ~MirrorLayer();
   MirrorLayer(const MirrorLayer&) = delete;
   MirrorLayer& operator=(const MirrorLayer&) = delete;
-  void setGround(const palette::Ground& ground);
+  void setBackgroundStyle(const palette::BackgroundStyle& ground);
 
  private:
   vtkRenderer& scene_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <vtkCellArray.h>
+#include <vtkFloatArray.h>
 #include <vtkPointData.h>
 #include <vtkProperty.h>
 
@@ -14,7 +15,7 @@
 namespace patina {
 namespace {
 
-constexpr double kRadius = 5; // voxels: a few hundred nodes, enough to see the cell and its like
+constexpr double kRadius = 5; // voxels: a few hundred nodes, the cell and its neighbourhood
 
 } // namespace
 
@@ -36,7 +37,7 @@ std::vector<FieldNode> nodesNear(const SurfaceField& field, const Vec3& point,
       for (int i = low[0]; i <= high[0]; ++i) {
         const Vec3 node(i, j, k);
         const float phi = reader.phiAt(i, j, k);
-        if ((node - q).norm() <= radius_voxels && std::abs(phi) < kBeyondBand)
+        if ((node - q).norm() <= radius_voxels && std::abs(phi) < kBackground)
           nodes.push_back({field.grid.toWorld(node), phi});
       }
   return nodes;
@@ -67,12 +68,8 @@ void NodeLayer::update(const SurfaceField& field, const Vec3& tip) {
   data_->SetPoints(points);
   data_->SetVerts(vertices);
   data_->GetPointData()->SetScalars(distance);
-  // A narrower map than the slice's: the sign is what one looks for near the surface.
+  // Narrower than the slice's map, because near the surface the sign matters.
   mapper_->SetLookupTable(distanceMap(500 * field.grid.voxel * kRadius));
-}
-
-void NodeLayer::setVisible(bool on) {
-  actor_->SetVisibility(on);
 }
 
 } // namespace patina

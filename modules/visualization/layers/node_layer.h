@@ -1,8 +1,9 @@
-// The field's nodes near the tip (K26): what contact computes with.
+// Draws the stored nodes of the field near the tip.
 #pragma once
 
+#include <vector>
+
 #include <vtkActor.h>
-#include <vtkFloatArray.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkRenderer.h>
@@ -12,19 +13,21 @@
 
 namespace patina {
 
+// A stored node of the field.
 struct FieldNode {
   Vec3 position; // [m]
   float phi = 0; // voxels
 };
-// Stored nodes within radius_voxels of a point; empty if it is not finite or far from all of them.
+// Returns stored nodes within radius_voxels of a point; empty if it is not finite or far from all.
 std::vector<FieldNode> nodesNear(const SurfaceField& field, const Vec3& point,
                                  double radius_voxels);
 
+// Draws the field's nodes near the tip, which the contact computation uses (K26).
 class NodeLayer {
  public:
   explicit NodeLayer(vtkRenderer& overlay);
   void update(const SurfaceField& field, const Vec3& tip);
-  void setVisible(bool on);
+  void setVisible(bool on) { actor_->SetVisibility(on); }
 
  private:
   vtkSmartPointer<vtkPolyData> data_;

@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include <vtkMapper.h>
 #include <vtkProperty.h>
 
 #include "scene/paint/grey_relief.h"
 #include "visualization/layers/image_surface.h"
-#include "visualization/layers/material_surface.h"
+#include "visualization/values/color_table.h"
 #include "visualization/values/scalar_bar.h"
 
 namespace patina {
 namespace {
 
-// Smallest range of both.
 ValueRange both(const ValueRange& a, const ValueRange& b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }
@@ -24,7 +22,7 @@ ValueRange both(const ValueRange& a, const ValueRange& b) {
 
 struct PaintLayer::Impl {
   struct Drawn {
-    SceneObject object; // with the relief that is felt
+    SceneObject object; // with the smoothed relief
     GreyImage grey;
     std::shared_ptr<const TexelMap> texels;
     std::unique_ptr<ImageSurface> image;
@@ -37,8 +35,10 @@ struct PaintLayer::Impl {
   Material base;
   double height = 0;
   std::optional<PaintQuantity> quantity;
-  std::array<std::optional<ValueRange>, kPaintQuantities> locked{}, found{};
-  std::optional<ValueRange> range; // of the colours
+  std::array<ColorScale, kPaintQuantities> scales{};
+  std::array<ValueRange, kPaintQuantities> ranges{};
+  ColorScale colors_scale;         // scale of `colors`
+  std::optional<ValueRange> range; // range of the colours
   vtkSmartPointer<vtkLookupTable> colors;
   std::optional<PaintQuantity> colors_of;
   bool visible = false, wireframe = false;
@@ -59,6 +59,7 @@ struct PaintLayer::Impl {
   }
 
   ValueRange prepareValues(Drawn& drawn);
+  void addValues(const Drawn& drawn, std::vector<double>& values) const;
   void setColors(const ValueRange& wanted);
   void showWhatIsDrawn();
 };
@@ -80,18 +81,36 @@ ValueRange PaintLayer::Impl::prepareValues(Drawn& drawn) {
   return *quantity == PaintQuantity::relief ? drawn.image->heights() : ValueRange{0, 0};
 }
 
+void PaintLayer::Impl::addValues(const Drawn& drawn, std::vector<double>& values) const {
+  if (channelOf(*quantity)) {
+    const std::vector<float> shown = drawn.material->values();
+    values.insert(values.end(), shown.begin(), shown.end());
+  } else if (quantity == PaintQuantity::relief) {
+    for (std::size_t tile = 0; drawn.object.paint->relief && // unpainted tiles do not count
+                               tile < drawn.object.paint->relief->tileCount();
+         ++tile)
+      if (const float* texels = drawn.object.paint->relief->tile(tile))
+        for (int i = 0; i < kTileSide * kTileSide; ++i)
+          values.push_back(height * static_cast<double>(texels[i]));
+  }
+}
+
 void PaintLayer::Impl::setColors(const ValueRange& wanted) {
-  if (colors && colors_of == quantity && range == wanted) return;
+  const ColorScale& scale = scales[at(*quantity)];
+  if (colors && colors_of == quantity && range == wanted && colors_scale == scale) return;
   range = wanted;
   colors_of = quantity;
-  colors = paintColors(*quantity, wanted);
+  colors_scale = scale;
+  colors = colorTable(
+      scale, quantity == PaintQuantity::relief ? StandardMap::diverging : StandardMap::sequential,
+      wanted);
   const ReadingUnit reading = readingUnit(*quantity, wanted);
   const vtkNew<vtkLookupTable> read;
   read->DeepCopy(colors);
-  read->SetRange(reading.per_si * wanted.low, reading.per_si * wanted.high);
+  read->SetRange(reading.display_per_si * wanted.low, reading.display_per_si * wanted.high);
   bar->SetLookupTable(read);
   setTitle(*bar, reading.title);
-  bar->SetLabelFormat("%.4g");
+  bar->SetLabelFormat(labelFormat(scale, "%.4g").c_str());
 }
 
 void PaintLayer::Impl::showWhatIsDrawn() {
@@ -109,24 +128,23 @@ void PaintLayer::Impl::showWhatIsDrawn() {
   bar->SetVisibility(any && quantity != PaintQuantity::color && colors != nullptr);
 }
 
-PaintLayer::PaintLayer(vtkRenderer& scene, vtkRenderer& overlay) : impl_(std::make_unique<Impl>()) {
-  impl_->scene = &scene;
-  overlay.AddActor2D(impl_->bar);
-  impl_->bar->SetVisibility(false);
+PaintLayer::PaintLayer(vtkRenderer& scene, vtkRenderer& overlay) : my_(std::make_unique<Impl>()) {
+  my_->scene = &scene;
+  overlay.AddActor2D(my_->bar);
+  my_->bar->SetVisibility(false);
 }
 
 PaintLayer::~PaintLayer() = default;
 
 void PaintLayer::set(const Scene& scene,
                      const std::vector<std::shared_ptr<const TexelMap>>& texels) {
-  Impl& my = *impl_;
-  // Objects are the same as long as their meshes are: an edit of one keeps the others' surfaces.
+  // Objects with the same mesh keep their surface, so that an edit of one leaves the others.
   std::vector<Impl::Drawn> objects(scene.objects.size());
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    const auto old = std::find_if(my.objects.begin(), my.objects.end(), [&](const auto& drawn) {
+    const auto old = std::find_if(my_->objects.begin(), my_->objects.end(), [&](const auto& drawn) {
       return drawn.object.mesh != nullptr && drawn.object.mesh == scene.objects[i].mesh;
     });
-    if (old != my.objects.end()) {
+    if (old != my_->objects.end()) {
       objects[i] = std::move(*old);
       old->object.mesh = nullptr;
     }
@@ -135,92 +153,91 @@ void PaintLayer::set(const Scene& scene,
         withRelief(scene.objects[i].paint, scene.relief.source, &objects[i].grey);
     if (i < texels.size() && texels[i]) objects[i].texels = texels[i];
     if (!objects[i].object.paint) {
-      my.remove(objects[i]);
+      my_->remove(objects[i]);
       objects[i].texels = nullptr;
     }
   }
-  for (Impl::Drawn& old : my.objects) my.remove(old);
-  my.objects = std::move(objects);
-  my.base = baseMaterial(scene.haptics);
-  my.height = scene.relief.height;
-  my.showWhatIsDrawn();
+  for (Impl::Drawn& old : my_->objects) my_->remove(old);
+  my_->objects = std::move(objects);
+  my_->base = baseMaterial(scene.haptics);
+  my_->height = scene.relief.height;
+  my_->showWhatIsDrawn();
 }
 
 void PaintLayer::show(std::optional<PaintQuantity> quantity) {
-  impl_->quantity = quantity;
-  impl_->showWhatIsDrawn();
+  my_->quantity = quantity;
+  my_->showWhatIsDrawn();
 }
 
 bool PaintLayer::has(PaintQuantity quantity) const {
-  return std::any_of(impl_->objects.begin(), impl_->objects.end(),
+  return std::any_of(my_->objects.begin(), my_->objects.end(),
                      [&](const Impl::Drawn& drawn) { return hasPaint(drawn.object, quantity); });
 }
 
 bool PaintLayer::draws(std::size_t object) const {
-  return object < impl_->objects.size() && impl_->draws(impl_->objects[object]);
+  return object < my_->objects.size() && my_->draws(my_->objects[object]);
 }
 
-void PaintLayer::lockRange(PaintQuantity quantity, std::optional<ValueRange> range) {
-  impl_->locked[Impl::at(quantity)] = range;
-}
-
-bool PaintLayer::locked(PaintQuantity quantity) const {
-  return impl_->locked[Impl::at(quantity)].has_value();
+void PaintLayer::setScale(PaintQuantity quantity, const ColorScale& scale) {
+  my_->scales[Impl::at(quantity)] = scale;
 }
 
 ValueRange PaintLayer::range(PaintQuantity quantity) const {
-  const Impl& my = *impl_;
-  if (my.locked[Impl::at(quantity)]) return *my.locked[Impl::at(quantity)];
-  return my.found[Impl::at(quantity)].value_or(ValueRange{});
+  return my_->ranges[Impl::at(quantity)];
 }
 
 vtkLookupTable* PaintLayer::colors() const {
-  return impl_->quantity == PaintQuantity::color ? nullptr : impl_->colors.Get();
+  return my_->quantity == PaintQuantity::color ? nullptr : my_->colors.Get();
 }
 
 void PaintLayer::setVisible(bool on) {
-  impl_->visible = on;
-  impl_->showWhatIsDrawn();
+  my_->visible = on;
+  my_->showWhatIsDrawn();
 }
 
 void PaintLayer::prepare() {
-  Impl& my = *impl_;
-  if (!my.quantity || !my.visible || !has(*my.quantity)) return;
-  const PaintQuantity quantity = *my.quantity;
+  if (!my_->quantity || !my_->visible || !has(*my_->quantity)) return;
+  const PaintQuantity quantity = *my_->quantity;
   std::optional<ValueRange> found;
-  for (Impl::Drawn& drawn : my.objects)
-    if (my.draws(drawn)) {
-      const ValueRange own = my.prepareValues(drawn);
+  for (Impl::Drawn& drawn : my_->objects)
+    if (my_->draws(drawn)) {
+      const ValueRange own = my_->prepareValues(drawn);
       found = found ? both(*found, own) : own;
     }
-  my.found[Impl::at(quantity)] = rounded(*found);
-  if (quantity != PaintQuantity::color) my.setColors(range(quantity));
-  for (Impl::Drawn& drawn : my.objects) {
-    if (!my.draws(drawn)) continue;
+  const ColorScale& scale = my_->scales[Impl::at(quantity)];
+  std::vector<double> values;
+  for (Impl::Drawn& drawn : my_->objects)
+    if (scale.percentile && my_->draws(drawn)) my_->addValues(drawn, values);
+  std::sort(values.begin(), values.end());
+  my_->ranges[Impl::at(quantity)] = shownRange(scale, rounded(*found), values);
+  if (quantity != PaintQuantity::color) my_->setColors(range(quantity));
+  for (Impl::Drawn& drawn : my_->objects) {
+    if (!my_->draws(drawn)) continue;
     if (channelOf(quantity))
-      drawn.material->setColors(my.colors);
+      drawn.material->setColors(my_->colors);
     else
-      drawn.image->prepare(quantity, my.colors);
+      drawn.image->prepare(quantity, my_->colors);
+    vtkActor& actor = channelOf(quantity) ? drawn.material->actor() : drawn.image->actor();
+    actor.GetProperty()->SetOpacity(scale.opacity.value_or(1));
   }
-  my.showWhatIsDrawn();
+  my_->showWhatIsDrawn();
 }
 
 void PaintLayer::setWireframe(bool on) {
-  impl_->wireframe = on;
-  impl_->showWhatIsDrawn();
+  my_->wireframe = on;
+  my_->showWhatIsDrawn();
 }
 
 void PaintLayer::setCuts(vtkPlaneCollection* planes) {
-  Impl& my = *impl_;
-  my.cuts = planes;
-  for (Impl::Drawn& drawn : my.objects)
+  my_->cuts = planes;
+  for (Impl::Drawn& drawn : my_->objects)
     for (vtkActor* actor : {drawn.image ? &drawn.image->actor() : nullptr,
                             drawn.material ? &drawn.material->actor() : nullptr})
       if (actor != nullptr) actor->GetMapper()->SetClippingPlanes(planes);
 }
 
 vtkScalarBarActor& PaintLayer::bar() {
-  return *impl_->bar;
+  return *my_->bar;
 }
 
 } // namespace patina

@@ -1,4 +1,4 @@
-// What was painted, on the surface: colour, relief and material as felt (K16, K21, K23).
+// Draws paint on the surface: colour, relief and rendered material (K16, K21, K23).
 #pragma once
 
 #include <memory>
@@ -15,45 +15,44 @@
 
 namespace patina {
 
-// Objects that have nothing painted of what is shown are not drawn here and cost nothing. UI
-// thread. Images become textures; material becomes values at the points of a surface about as
-// fine as the material's grid, so that a plate of two triangles shows it too, and a change of range
-// costs nothing.
+// Objects without the shown kind of paint are not drawn here and cost nothing. Images become
+// textures. Material becomes values on a surface about as fine as the material's grid, so that a
+// plate of two triangles shows it too, and a change of range costs nothing. UI thread.
 class PaintLayer {
  public:
-  // scene: where the surfaces are; overlay: where the scalar bar is.
+  // scene: renderer of the surfaces; overlay: renderer of the scalar bar.
   PaintLayer(vtkRenderer& scene, vtkRenderer& overlay);
   ~PaintLayer();
   PaintLayer(const PaintLayer&) = delete;
   PaintLayer& operator=(const PaintLayer&) = delete;
 
-  // The scene as it is now, after every edit and every dab: what changed is found by comparing
-  // pointers of objects, tiles and blocks, and drawn by the next prepare(), once for any number of
-  // calls. `texels`: maps that exist already, one an object or none; what is missing is made when
-  // relief is drawn.
+  // Sets the scene after an edit or a dab. The next prepare() compares pointers of objects, tiles
+  // and blocks and draws the changes, once for any number of calls. `texels`: existing texel maps,
+  // one per object or none; missing ones are made when relief is drawn.
   void set(const Scene& scene, const std::vector<std::shared_ptr<const TexelMap>>& texels = {});
 
   void show(std::optional<PaintQuantity> quantity); // nullopt: nothing
-  // Whether there is anything of it to see, and whether an object is drawn here and not elsewhere.
+  // Whether any object has this paint, and whether this layer draws an object instead of the mesh.
   bool has(PaintQuantity quantity) const;
   bool draws(std::size_t object) const;
 
-  // nullopt: what is painted and the scene's own value, rounded, widened as painting goes on.
-  void lockRange(PaintQuantity quantity, std::optional<ValueRange> range);
-  bool locked(PaintQuantity quantity) const;
-  ValueRange range(PaintQuantity quantity) const; // as shown, after prepare()
-  vtkLookupTable* colors() const; // of what is shown, in SI, after prepare(); nullptr for colour
+  // The default range is that of the paint and the scene's base value, rounded, which grows while
+  // painting.
+  void setScale(PaintQuantity quantity, const ColorScale& scale);
+  ValueRange range(PaintQuantity quantity) const; // range drawn by prepare()
+  // of the shown quantity, in SI, after prepare(); nullptr for colour
+  vtkLookupTable* colors() const;
 
   void setVisible(bool on); // surfaces and bar
-  // Brings textures and values up to date with what was given. Before a render.
+  // Updates textures and values. Call before a render.
   void prepare();
   void setWireframe(bool on);
-  void setCuts(vtkPlaneCollection* planes); // of its surfaces; nullptr: none
+  void setCuts(vtkPlaneCollection* planes); // clip planes of its surfaces; nullptr: none
   vtkScalarBarActor& bar();
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<Impl> my_;
 };
 
 } // namespace patina

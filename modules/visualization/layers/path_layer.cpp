@@ -5,26 +5,24 @@
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
-#include <vtkLookupTable.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 #include <vtkTubeFilter.h>
 
 #include "visualization/surfaces/precise_points.h"
+#include "visualization/values/color_table.h"
 #include "visualization/values/paint_quantity.h"
-#include "visualization/values/palette.h"
 #include "visualization/values/scalar_bar.h"
-#include "visualization/view/scene_furniture.h"
+#include "visualization/values/scene_setup.h"
 
 namespace patina {
 namespace {
 
-constexpr double kThick = 0.007, kMark = 0.016; // radii, of the path's extent
-constexpr double kPalest = 0.22;                // of the colours, that is left out
-constexpr double kStep = 1. / 1200;             // of it: nearer samples look like one
+constexpr double kThick = 0.007, kMarkRadius = 0.016; // radii, fractions of the path's extent
+constexpr double kPalest = 0.22;    // fraction of the colours at the pale end that is left out
+constexpr double kStep = 1. / 1200; // fraction of the extent; nearer samples are merged
 
 Box3 boxOf(const std::vector<DrawnSample>& samples) {
   Box3 box;
@@ -52,7 +50,16 @@ std::vector<DrawnSample> thinned(const std::vector<DrawnSample>& samples) {
   return kept;
 }
 
-// The lines through what is bridged, or through the rest, each with the sample before it.
+vtkSmartPointer<vtkPolyData> linesThrough(vtkPoints* points, vtkCellArray* lines,
+                                          vtkDoubleArray* values) {
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(lines);
+  data->GetPointData()->SetScalars(values);
+  return data;
+}
+
+// Lines of bridged samples, or of the others, each from the sample before it.
 vtkSmartPointer<vtkPolyData> linesOf(const std::vector<DrawnSample>& samples, bool bridged) {
   const auto points = precisePoints();
   const vtkNew<vtkCellArray> lines;
@@ -80,11 +87,7 @@ vtkSmartPointer<vtkPolyData> linesOf(const std::vector<DrawnSample>& samples, bo
     add(samples[i]);
   }
   end();
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(points);
-  data->SetLines(lines);
-  data->GetPointData()->SetScalars(values);
-  return data;
+  return linesThrough(points, lines, values);
 }
 
 vtkSmartPointer<vtkPolyData> residualsOf(const std::vector<DrawnSample>& samples, double stretch) {
@@ -100,19 +103,17 @@ vtkSmartPointer<vtkPolyData> residualsOf(const std::vector<DrawnSample>& samples
       values->InsertNextValue(sample.value);
     }
   }
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  data->SetPoints(points);
-  data->SetLines(lines);
-  data->GetPointData()->SetScalars(values);
-  return data;
+  return linesThrough(points, lines, values);
 }
 
-vtkPolyDataMapper* meshMapper(vtkActor& actor) {
-  return vtkPolyDataMapper::SafeDownCast(actor.GetMapper());
-}
-
-// Dark is much, without the palest, which a thin line would not show.
-vtkSmartPointer<vtkLookupTable> pathColors(const ValueRange& range) {
+// Colours of the path and of the error map. Dark means a high value; the palest colours are left
+// out, because thin lines would not show them.
+vtkSmartPointer<vtkLookupTable> pathColors(const ColorScale& scale, const ValueRange& range) {
+  if (scale.map != ColorMap::standard || scale.bands > 0 || scale.reversed || scale.logarithmic) {
+    const auto table = colorTable(scale, StandardMap::sequential, range);
+    table->SetNanColor(palette::kNoValue[0], palette::kNoValue[1], palette::kNoValue[2], 1);
+    return table;
+  }
   const auto all = paintColors(PaintQuantity::first_channel, range);
   auto colors = vtkSmartPointer<vtkLookupTable>::New();
   colors->SetNumberOfTableValues(256);
@@ -131,15 +132,15 @@ vtkSmartPointer<vtkLookupTable> pathColors(const ValueRange& range) {
 
 PathLayer::PathLayer(vtkRenderer& scene, vtkRenderer& overlay)
     : tube_(surfaceActor(palette::kForce)), line_(surfaceActor(palette::kForce)),
-      thread_(surfaceActor(palette::kToolShaft)), bridge_(surfaceActor(palette::kQuiet)),
+      overlay_line_(surfaceActor(palette::kToolShaft)), bridge_(surfaceActor(palette::kSecondary)),
       residuals_(surfaceActor(palette::kForce)), mark_actor_(vtkSmartPointer<vtkActor>::New()),
       mark_mapper_(vtkSmartPointer<vtkGlyph3DMapper>::New()), bar_(scalarBar("")) {
   tube_->GetProperty()->SetAmbient(0.35);
   line_->GetProperty()->SetLineWidth(3);
   bridge_->GetProperty()->SetLineWidth(2);
-  thread_->GetProperty()->SetLineWidth(1.5);
+  overlay_line_->GetProperty()->SetLineWidth(1.5);
   residuals_->GetProperty()->SetLineWidth(1.5);
-  for (const auto& actor : {line_, thread_, bridge_, residuals_})
+  for (const auto& actor : {line_, overlay_line_, bridge_, residuals_})
     actor->GetProperty()->LightingOff();
   const vtkNew<vtkSphereSource> ball;
   ball->SetRadius(1);
@@ -149,7 +150,7 @@ PathLayer::PathLayer(vtkRenderer& scene, vtkRenderer& overlay)
   mark_actor_->SetMapper(mark_mapper_);
   mark_actor_->GetProperty()->SetColor(palette::forVtk(palette::kForce));
   for (const auto& actor : {tube_, line_, bridge_, residuals_, mark_actor_}) scene.AddActor(actor);
-  overlay.AddActor(thread_);
+  overlay.AddActor(overlay_line_);
   bar_->SetLabelFormat("%.3g");
   bar_->SetVisibility(false);
   overlay.AddActor2D(bar_);
@@ -157,6 +158,7 @@ PathLayer::PathLayer(vtkRenderer& scene, vtkRenderer& overlay)
 
 void PathLayer::setPath(const DrawnPath& path) {
   drawn_ = thinned(path.samples);
+  title_ = path.title;
   ValueRange range{INFINITY, -INFINITY};
   for (const DrawnSample& sample : drawn_) {
     if (!std::isfinite(sample.value)) continue;
@@ -174,23 +176,29 @@ void PathLayer::setPath(const DrawnPath& path) {
   tube->CappingOn();
   tube->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   tube->Update();
-  meshMapper(*tube_)->SetInputData(tube->GetOutput());
-  meshMapper(*line_)->SetInputData(lines);
-  const vtkNew<vtkPolyData> thread; // without the values: in one colour
-  thread->SetPoints(lines->GetPoints());
-  if (path.through) thread->SetLines(lines->GetLines());
-  meshMapper(*thread_)->SetInputData(thread);
-  meshMapper(*bridge_)->SetInputData(linesOf(drawn_, true));
-  meshMapper(*residuals_)->SetInputData(residualsOf(drawn_, path.stretch));
+  mapperOf(*tube_).SetInputData(tube->GetOutput());
+  mapperOf(*line_).SetInputData(lines);
+  const vtkNew<vtkPolyData> overlay_line; // without values: one colour
+  overlay_line->SetPoints(lines->GetPoints());
+  if (path.show_through) overlay_line->SetLines(lines->GetLines());
+  mapperOf(*overlay_line_).SetInputData(overlay_line);
+  mapperOf(*bridge_).SetInputData(linesOf(drawn_, true));
+  mapperOf(*residuals_).SetInputData(residualsOf(drawn_, path.stretch));
   colors_ = nullptr;
   setMarks(marks_);
   if (!has_values) return;
-  range.high = std::max(range.high, range.low + path.least_span);
-  colors_ = pathColors(rounded(range));
+  range.high = std::max(range.high, range.low + path.min_span);
+  std::vector<double> values;
+  for (const DrawnSample& sample : drawn_)
+    if (std::isfinite(sample.value)) values.push_back(sample.value);
+  std::sort(values.begin(), values.end());
+  range = shownRange(path.scale, rounded(range), values);
+  colors_ = pathColors(path.scale, range);
+  bar_->SetLabelFormat(labelFormat(path.scale, "%.3g").c_str());
   for (const auto& actor : {tube_, line_, residuals_}) {
-    meshMapper(*actor)->ScalarVisibilityOn();
-    meshMapper(*actor)->SetLookupTable(colors_);
-    meshMapper(*actor)->UseLookupTableScalarRangeOn();
+    mapperOf(*actor).ScalarVisibilityOn();
+    mapperOf(*actor).SetLookupTable(colors_);
+    mapperOf(*actor).UseLookupTableScalarRangeOn();
   }
   bar_->SetLookupTable(colors_);
   setTitle(*bar_, path.title);
@@ -199,7 +207,7 @@ void PathLayer::setPath(const DrawnPath& path) {
 void PathLayer::setMarks(const std::vector<DrawnMark>& marks) {
   marks_ = marks;
   const auto points = precisePoints();
-  // Copies of a ball are placed in floats: about the first mark, where the actor stands.
+  // VTK places glyphs in floats, so positions are relative to the first mark, at the actor.
   const Vec3 middle = marks.empty() ? Vec3::Zero() : marks[0].position;
   for (const DrawnMark& mark : marks)
     points->InsertNextPoint((mark.position - middle).eval().data());
@@ -207,29 +215,29 @@ void PathLayer::setMarks(const std::vector<DrawnMark>& marks) {
   const vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   mark_mapper_->SetInputData(data);
-  mark_mapper_->SetScaleFactor(kMark * sizeOf(boxOf(drawn_)));
+  mark_mapper_->SetScaleFactor(kMarkRadius * sizeOf(boxOf(drawn_)));
 }
 
 Box3 PathLayer::extent() const {
   return boxOf(drawn_);
 }
 
-std::optional<double> PathLayer::timeAt(vtkRenderer& scene, double x, double y,
-                                        double reach) const {
+std::optional<DrawnSample> PathLayer::sampleAt(vtkRenderer& scene, double x, double y,
+                                               double reach) const {
   double nearest = reach * reach;
-  std::optional<double> t;
-  const auto look = [&](const Vec3& position, double when) {
-    scene.SetWorldPoint(position.x(), position.y(), position.z(), 1);
+  std::optional<DrawnSample> found;
+  const auto look = [&](const DrawnSample& sample) {
+    scene.SetWorldPoint(sample.position.x(), sample.position.y(), sample.position.z(), 1);
     scene.WorldToDisplay();
     const double* pixel = scene.GetDisplayPoint();
     const double squared = (pixel[0] - x) * (pixel[0] - x) + (pixel[1] - y) * (pixel[1] - y);
     if (squared >= nearest) return;
     nearest = squared;
-    t = when;
+    found = sample;
   };
-  for (const DrawnSample& sample : drawn_) look(sample.position, sample.t);
-  for (const DrawnMark& mark : marks_) look(mark.position, mark.t);
-  return t;
+  for (const DrawnSample& sample : drawn_) look(sample);
+  for (const DrawnMark& mark : marks_) look({mark.t, mark.position, NAN});
+  return found;
 }
 
 } // namespace patina

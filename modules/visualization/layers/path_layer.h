@@ -1,5 +1,5 @@
-// The path of a scan: a tube coloured by a value, thin where it only bridges a gap, with what was
-// left out of it beside it.
+// Draws the path of a scan as a tube coloured by a value, thin across bridged gaps, with marks at
+// rejected measurements.
 #pragma once
 
 #include <optional>
@@ -14,28 +14,29 @@
 #include <vtkSmartPointer.h>
 
 #include "core/types.h"
+#include "scene/color_scale.h"
 
 namespace patina {
 
 struct DrawnSample {
   double t = 0;                 // [s]
   Vec3 position = Vec3::Zero(); // [m]
-  double value = 0;             // in the unit of the title; not finite: none
-  bool bridged = false;         // nobody saw it: a gap's
-  bool begins = false;          // nothing leads here from the sample before
-  std::optional<Vec3> foot{};   // where on a surface it should lie [m]
+  double value = 0;             // in the unit of the title; not finite: no value
+  bool bridged = false;         // interpolated across a gap
+  bool begins = false;          // no line from the previous sample
+  std::optional<Vec3> foot{};   // corresponding point on the surface [m]
 };
 
 struct DrawnPath {
-  std::vector<DrawnSample> samples; // in the order of time
-  std::string title;                // of the values: "force [N]"
-  bool bar = true;                  // says what the colours are
-  double least_span = 0;            // of the values that the colours tell apart
-  double stretch = 0;   // lines from each foot towards its sample, so many times as long; 0: none
-  bool through = false; // a dark thread along it is seen through what hides it
+  std::vector<DrawnSample> samples; // in order of time
+  std::string title;                // title of the values: "force [N]"
+  bool bar = true;                  // show the scalar bar
+  double min_span = 0;              // min range of the colours
+  ColorScale scale{};               // its range is in the unit of the values
+  double stretch = 0; // scale of the residual lines from each foot towards its sample; 0: none
+  bool show_through = false; // draw a dark line that shows through surfaces
 };
 
-// What was seen and is not part of the path.
 struct DrawnMark {
   double t = 0;
   Vec3 position = Vec3::Zero();
@@ -43,25 +44,27 @@ struct DrawnMark {
 
 class PathLayer {
  public:
-  // scene: hidden by surfaces in front of it; overlay: where the scalar bar is.
+  // scene: hidden by surfaces in front; overlay: renderer of the scalar bar.
   PathLayer(vtkRenderer& scene, vtkRenderer& overlay);
 
-  // Of very many samples those are drawn that can be told apart.
+  // Merges samples that are too close to distinguish.
   void setPath(const DrawnPath& path);
   void setMarks(const std::vector<DrawnMark>& marks);
   vtkScalarBarActor& bar() { return *bar_; }
-  vtkLookupTable* colors() const { return colors_; } // of the values; nullptr: it has none
+  vtkLookupTable* colors() const { return colors_; } // nullptr: no values
   bool hasBar() const { return has_bar_; }
-  Box3 extent() const; // of path and marks; empty without any
-  // When the tip was nearest to a point of the picture, x and y in pixels from its lower left;
-  // nullopt: nothing drawn is within `reach`.
-  std::optional<double> timeAt(vtkRenderer& scene, double x, double y, double reach) const;
+  Box3 extent() const;                                // path and marks; empty if there are none
+  const std::string& title() const { return title_; } // title of the values
+  // The sample, or a mark without a value, that is drawn nearest to a point of the picture; x and y
+  // in pixels from the lower left. nullopt: nothing is drawn within `reach`.
+  std::optional<DrawnSample> sampleAt(vtkRenderer& scene, double x, double y, double reach) const;
 
  private:
   std::vector<DrawnSample> drawn_;
+  std::string title_;
   std::vector<DrawnMark> marks_;
-  vtkSmartPointer<vtkActor> tube_, line_, thread_, bridge_, residuals_,
-      mark_actor_; // a line is seen from afar, too
+  vtkSmartPointer<vtkActor> tube_, line_, overlay_line_, bridge_, residuals_,
+      mark_actor_; // line_ is visible from afar, too
   vtkSmartPointer<vtkGlyph3DMapper> mark_mapper_;
   vtkSmartPointer<vtkLookupTable> colors_;
   vtkSmartPointer<vtkScalarBarActor> bar_;

@@ -13,7 +13,7 @@
 
 namespace patina {
 namespace {
-constexpr double kMost = 11; // as wide as so many lines are high
+constexpr double kMost = 11; // max width in heights of a line of text
 } // namespace
 
 double roundLength(double most) {
@@ -26,7 +26,8 @@ double roundLength(double most) {
 ScaleLayer::ScaleLayer(vtkRenderer& overlay)
     : bar_(vtkSmartPointer<vtkActor2D>::New()), words_(vtkSmartPointer<vtkTextActor>::New()) {
   const vtkNew<vtkPolyDataMapper2D> mapper;
-  mapper->SetInputData(vtkNew<vtkPolyData>()); // a picture may be drawn before it has a height
+  // the picture may be drawn before its height is known
+  mapper->SetInputData(vtkNew<vtkPolyData>());
   bar_->SetMapper(mapper);
   words_->GetTextProperty()->SetJustificationToCentered();
   words_->GetTextProperty()->SetVerticalJustificationToBottom();
@@ -35,19 +36,14 @@ ScaleLayer::ScaleLayer(vtkRenderer& overlay)
   setVisible(false);
 }
 
-void ScaleLayer::setVisible(bool on) {
-  bar_->SetVisibility(on);
-  words_->SetVisibility(on);
-}
-
-void ScaleLayer::update(vtkCamera& camera, int high, const Lettering& letters) {
+void ScaleLayer::update(vtkCamera& camera, int high, const TextStyle& letters) {
   const double half = camera.GetParallelProjection() != 0
                           ? camera.GetParallelScale()
                           : camera.GetDistance() * std::tan(camera.GetViewAngle() * M_PI / 360);
   if (!(half > 0) || high <= 0) return;
   const double pixel = 2 * half / high; // [m]
   const double length = roundLength(kMost * letters.pixels * pixel);
-  // A bracket at the lower edge, to the right of the axes.
+  // Bracket at the lower edge, right of the axes.
   const double left = 10.0 * letters.pixels, low = 0.9 * letters.pixels;
   const double right = left + length / pixel, tick = 0.45 * letters.pixels;
   const vtkNew<vtkPoints> points;
@@ -63,9 +59,9 @@ void ScaleLayer::update(vtkCamera& camera, int high, const Lettering& letters) {
   bar_->GetProperty()->SetColor(palette::forVtk(letters.ground.text));
   bar_->GetProperty()->SetLineWidth(static_cast<float>(0.14 * letters.pixels));
   write(*words_->GetTextProperty(), letters, letters.ground.text, true);
-  // Over the ground it is not seen, over a body the words can be read.
+  // Invisible on the background, but legible in front of a body.
   words_->GetTextProperty()->SetBackgroundColor(palette::forVtk(letters.ground.low));
-  words_->GetTextProperty()->SetBackgroundOpacity(0.8);
+  words_->GetTextProperty()->SetBackgroundOpacity(letters.ground.plates ? 0.8 : 0);
   std::string text = formatLength(length);
   if (const auto at = text.find(" um"); at != std::string::npos) text.replace(at, 3, " \xC2\xB5m");
   words_->SetInput(text.c_str());

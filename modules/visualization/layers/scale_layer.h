@@ -1,8 +1,5 @@
-// How long something is in the picture: a bar of a round length, that of a thing as far away as
-// what the camera looks at.
+// Scale bar of a round length, valid at the distance of the camera's focal point.
 #pragma once
-
-#include <string>
 
 #include <vtkActor2D.h>
 #include <vtkCamera.h>
@@ -10,19 +7,22 @@
 #include <vtkSmartPointer.h>
 #include <vtkTextActor.h>
 
-#include "visualization/values/lettering.h"
+#include "visualization/values/text_style.h"
 
 namespace patina {
 
-// The longest of 1, 2 or 5 times a power of ten that is no longer than `most` > 0 [m].
+// Largest 1, 2 or 5 times a power of ten that is at most `most` > 0 [m].
 double roundLength(double most);
 
 class ScaleLayer {
  public:
   explicit ScaleLayer(vtkRenderer& overlay);
-  void setVisible(bool on);
-  // Before a render, in a picture of that height [pixels].
-  void update(vtkCamera& camera, int high, const Lettering& letters);
+  void setVisible(bool on) {
+    bar_->SetVisibility(on);
+    words_->SetVisibility(on);
+  }
+  // Call before a render; `high` is the picture's height [pixels].
+  void update(vtkCamera& camera, int high, const TextStyle& letters);
 
  private:
   vtkSmartPointer<vtkActor2D> bar_;

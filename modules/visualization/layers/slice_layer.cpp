@@ -10,20 +10,21 @@
 
 #include "field/store/node_reader.h"
 #include "scene/painted_value.h"
-#include "visualization/values/distance_map.h"
+#include "scene/surface_pick.h"
+#include "visualization/values/color_table.h"
 #include "visualization/values/palette.h"
 #include "visualization/values/scalar_bar.h"
 
 namespace patina {
 namespace {
 
-// VTK resamples a texture whose sides are no powers of two, and leaves notches where it rounds: of
-// some four texels a cell, as many as give a power.
+// VTK resamples textures whose sides are not powers of two and leaves notches. Returns a power of
+// two near four texels per cell.
 int texelsOver(int cells) {
   return 1 << std::clamp(std::lround(std::log2(4.0 * cells)), 2L, 13L);
 }
 
-// 1, 2 or 5 times a power of ten, so that at most `lines` of them fit in `length`.
+// Smallest 1, 2 or 5 times a power of ten such that at most `lines` steps fit into `length`.
 double niceStep(double length, int lines) {
   const double raw = length / lines;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -32,30 +33,36 @@ double niceStep(double length, int lines) {
   return 10 * power;
 }
 
-// How much of a texel a line covers: phi is a distance, so a line of constant width is a range of
-// phi, and its edge is softened over one texel.
+// Fraction of a texel that a line covers. phi is a distance, so a line of constant width is a range
+// of phi; its edge is smoothed over one texel.
 double coverage(double distance, double half_width, double texel) {
   return std::clamp((half_width - distance) / texel + 0.5, 0.0, 1.0);
+}
+
+// Largest |phi| that is drawn [voxels]: every cell has all its nodes there.
+// A texel of a plane at an angle to the grid needs nodes that are farther away.
+double shownReach(const SurfaceField& field, const Vec3& normal) {
+  const bool at_angle = normal.cwiseAbs().maxCoeff() < 1 - 1e-9;
+  return std::max(0.6 * field.band, field.band - (at_angle ? 3.2 : 1.75));
 }
 
 struct Ink {
   vtkLookupTable* map;
   double voxel_mm, step_mm;
   double texel;    // voxels
-  double shown;    // voxels: a little less than the band, where every cell has all of its nodes
-  double edge = 0; // voxels, of the tinted band; 0 = none
+  double shown;    // voxels; slightly below the band, where every cell has all its nodes
+  double edge = 0; // voxels, edge of the tinted band; 0 = none
   palette::Color tint{};
   std::optional<SliceMaterial> material{};
 
-  // At `place` [m].
   void paint(double phi_voxels, const Vec3& place, unsigned char* rgba) const {
     const double mm = phi_voxels * voxel_mm;
     std::array<double, 3> color{};
     if (material) {
       const PaintedValue value = paintedValue(*material->scene, material->channel, place);
-      // Little paint is seen as paint; the rim is softened.
+      // Thin paint is visible at full colour; its edge is smoothed.
       const double cover = std::clamp(8 * value.weight, 0.0, 1.0);
-      const unsigned char* of_value = material->colors->MapValue(value.felt);
+      const unsigned char* of_value = material->colors->MapValue(value.value);
       for (std::size_t c = 0; c < 3; ++c)
         color[c] = cover * of_value[c] + (1 - cover) * 255 * palette::kLight.low[c];
     } else {
@@ -79,12 +86,37 @@ struct Ink {
   }
 };
 
-struct Corners {
-  Vec3 origin, across, up; // [m]; the plane's whole sides
-};
+// Interpolates linearly at grid coordinates; NaN if a node that counts is not stored.
+float valueAt(const NodeReader& nodes, const Vec3& q) {
+  const Vec3 low = q.array().floor();
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    std::array<int, 3> node{};
+    double weight = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int step = corner >> axis & 1;
+      node[static_cast<std::size_t>(axis)] = static_cast<int>(low[axis]) + step;
+      weight *= step == 1 ? q[axis] - low[axis] : 1 - (q[axis] - low[axis]);
+    }
+    if (weight < 1e-9) continue;
+    const float phi = nodes.phiAt(node[0], node[1], node[2]);
+    if (std::abs(phi) >= kBackground) return std::numeric_limits<float>::quiet_NaN();
+    sum += weight * phi;
+  }
+  return static_cast<float>(sum);
+}
 
-vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Corners& corners,
-                                      const Ink& ink) {
+// Distances that the plane shows, up to `shown` [voxels], ascending [m].
+std::vector<double> shownDistances(const FieldPlane& plane, double voxel, double shown) {
+  std::vector<double> distances;
+  for (const float phi : plane.phi)
+    if (std::abs(static_cast<double>(phi)) < shown)
+      distances.push_back(voxel * static_cast<double>(phi));
+  std::sort(distances.begin(), distances.end());
+  return distances;
+}
+
+vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Ink& ink) {
   auto image = vtkSmartPointer<vtkImageData>::New();
   const int columns = plane.columns - 1, rows = plane.rows - 1; // cells
   const int width = texelsOver(columns), height = texelsOver(rows);
@@ -105,8 +137,7 @@ vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Corners& co
                          v * ((1 - u) * node(column, row + 1) + u * node(column + 1, row + 1));
       if (std::isfinite(phi))
         ink.paint(phi,
-                  corners.origin + (x + 0.5) / width * corners.across +
-                      (y + 0.5) / height * corners.up,
+                  plane.origin + (x + 0.5) / width * plane.across + (y + 0.5) / height * plane.up,
                   rgba);
       else
         std::fill(rgba, rgba + 4, static_cast<unsigned char>(0));
@@ -116,31 +147,71 @@ vtkSmartPointer<vtkImageData> painted(const FieldPlane& plane, const Corners& co
 
 } // namespace
 
-FieldPlane planeOf(const SurfaceField& field, const SlicePlace& place) {
-  const auto along = static_cast<std::size_t>(place.axis);
-  const std::size_t across = (along + 1) % 3, up = (along + 2) % 3;
-  const int last_cell = std::max(0, field.grid.nodes[along] - 2);
-  const double q = std::clamp(place.position, 0.0, 1.0) * (field.grid.nodes[along] - 1);
-  const int below = std::clamp(static_cast<int>(q), 0, last_cell);
-  const auto weight = static_cast<float>(q - below);
+Box3 boxOf(const FieldGrid& grid) {
+  const Vec3 last(grid.nodes[0] - 1, grid.nodes[1] - 1, grid.nodes[2] - 1);
+  return Box3(grid.origin, grid.toWorld(last));
+}
 
+ValueRange rangeOf(const FieldGrid& grid, const Vec3& normal) {
+  const Box3 box = boxOf(grid);
+  const double middle = normal.dot(box.center());
+  const double half = 0.5 * normal.cwiseAbs().dot(box.sizes());
+  return {middle - half, middle + half};
+}
+
+SlicePosition within(const FieldGrid& grid, SlicePosition place) {
+  const ValueRange range = rangeOf(grid, place.normal);
+  place.position =
+      std::clamp(place.position.value_or((range.low + range.high) / 2), range.low, range.high);
+  return place;
+}
+
+FieldPlane planeOf(const SurfaceField& field, const SlicePosition& place) {
+  const FieldGrid& grid = field.grid;
   FieldPlane plane;
-  plane.columns = field.grid.nodes[across];
-  plane.rows = field.grid.nodes[up];
+  plane.normal = place.normal;
+  int along = 0;
+  place.normal.cwiseAbs().maxCoeff(&along);
+  const Vec3 axis = Vec3::Unit((along + 1) % 3);
+  const Vec3 across = (axis - axis.dot(place.normal) * place.normal).normalized();
+  const Vec3 up = place.normal.cross(across);
+  const auto points = [&](const ValueRange& range) {
+    return 1 +
+           std::max(1, static_cast<int>(std::ceil((range.high - range.low) / grid.voxel - 1e-6)));
+  };
+  const ValueRange wide = rangeOf(grid, across), high = rangeOf(grid, up);
+  plane.columns = points(wide);
+  plane.rows = points(high);
+  plane.origin = wide.low * across + high.low * up + *within(grid, place).position * place.normal;
+  plane.across = (plane.columns - 1) * grid.voxel * across;
+  plane.up = (plane.rows - 1) * grid.voxel * up;
   plane.phi.reserve(static_cast<std::size_t>(plane.columns) * static_cast<std::size_t>(plane.rows));
   const NodeReader nodes(field);
-  std::array<int, 3> node{};
-  for (node[up] = 0; node[up] < plane.rows; ++node[up])
-    for (node[across] = 0; node[across] < plane.columns; ++node[across]) {
-      node[along] = below;
-      const float low = nodes.phiAt(node[0], node[1], node[2]);
-      node[along] = below + 1;
-      const float high = nodes.phiAt(node[0], node[1], node[2]);
-      const bool stored = std::abs(low) < kBeyondBand && std::abs(high) < kBeyondBand;
-      plane.phi.push_back(stored ? (1 - weight) * low + weight * high
-                                 : std::numeric_limits<float>::quiet_NaN());
+  for (int row = 0; row < plane.rows; ++row)
+    for (int column = 0; column < plane.columns; ++column) {
+      const Vec3 q = grid.toGrid(plane.origin + grid.voxel * (column * across + row * up));
+      // Rounding would turn nodes of the grid's end into nodes beyond it.
+      const Vec3 node = q.array().round();
+      plane.phi.push_back(valueAt(nodes, (q - node).cwiseAbs().maxCoeff() < 1e-6 ? node : q));
     }
   return plane;
+}
+
+std::vector<float> refinedValues(const FieldPlane& plane, int n) {
+  std::vector<float> values;
+  for (int row = 0; row + 1 < plane.rows; ++row)
+    for (int column = 0; column + 1 < plane.columns; ++column) {
+      const float* low = &plane.phi[static_cast<std::size_t>(row * plane.columns + column)];
+      const float* high = low + plane.columns;
+      if (!std::isfinite(low[0] + low[1] + high[0] + high[1])) continue;
+      for (int i = 0; i < n * n; ++i) {
+        const auto u = (static_cast<float>(i % n) + 0.5F) / static_cast<float>(n);
+        const auto v = (static_cast<float>(i / n) + 0.5F) / static_cast<float>(n);
+        values.push_back((1 - v) * ((1 - u) * low[0] + u * low[1]) +
+                         v * ((1 - u) * high[0] + u * high[1]));
+      }
+    }
+  return values;
 }
 
 SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
@@ -161,49 +232,60 @@ SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
   setVisible(false);
 }
 
-void SliceLayer::update(const SurfaceField& field, const SlicePlace& place,
+void SliceLayer::update(const SurfaceField& field, const SlicePosition& place,
                         const std::optional<TouchBand>& band,
-                        const std::optional<SliceMaterial>& material) {
-  const auto along = static_cast<std::size_t>(place.axis);
+                        const std::optional<SliceMaterial>& material, const ColorScale& scale) {
   const FieldGrid& grid = field.grid;
-  Vec3 corner = Vec3::Zero();
-  corner[place.axis] = std::clamp(place.position, 0.0, 1.0) * (grid.nodes[along] - 1);
-  Vec3 across = corner, up = corner;
-  across[(place.axis + 1) % 3] = grid.nodes[(along + 1) % 3] - 1;
-  up[(place.axis + 2) % 3] = grid.nodes[(along + 2) % 3] - 1;
-  quad_->SetOrigin(grid.toWorld(corner).data());
-  quad_->SetPoint1(grid.toWorld(across).data());
-  quad_->SetPoint2(grid.toWorld(up).data());
-  plane_->SetOrigin(grid.toWorld(corner).data());
-  position_ = grid.toWorld(corner)[place.axis];
-  Vec3 normal = Vec3::Unit(place.axis);
-  plane_->SetNormal(normal.data());
+  const FieldPlane plane = planeOf(field, place);
+  quad_->SetOrigin(plane.origin.x(), plane.origin.y(), plane.origin.z());
+  Vec3 corner = plane.origin + plane.across;
+  quad_->SetPoint1(corner.data());
+  corner = plane.origin + plane.up;
+  quad_->SetPoint2(corner.data());
+  origin_ = plane.origin;
 
   const double voxel_mm = 1000 * grid.voxel;
   const double limit_mm = field.band * voxel_mm;
-  const auto map = distanceMap(limit_mm);
-  const int cells = grid.nodes[(along + 1) % 3] - 1;
+  shown_ = shownReach(field, place.normal);
+  range_ = shownRange(scale, {-1e-3 * limit_mm, 1e-3 * limit_mm},
+                      scale.percentile ? shownDistances(plane, grid.voxel, shown_)
+                                       : std::vector<double>{});
+  const auto map = colorTable(scale, StandardMap::diverging, {1e3 * range_.low, 1e3 * range_.high});
+  const double reach_mm =
+      std::min(limit_mm, 1e3 * std::max(std::abs(range_.low), std::abs(range_.high)));
+  const int cells = plane.columns - 1;
   Ink ink{.map = map,
           .voxel_mm = voxel_mm,
-          .step_mm = niceStep(limit_mm, 4),
+          // Lines nearer than a voxel would cover the colours.
+          .step_mm = niceStep(std::max(reach_mm, 4 * voxel_mm), 4),
           .texel = static_cast<double>(cells) / texelsOver(cells),
-          .shown = std::max(0.6 * field.band, field.band - 1.75)};
+          .shown = shown_};
   if (band && isStored(*band, field)) {
     ink.edge = band->edge / grid.voxel;
     ink.tint = bandColor(*band);
   }
   ink.material = material;
   shows_distance_ = !material;
-  const Vec3 origin = grid.toWorld(corner);
-  texture_->SetInputData(painted(planeOf(field, place),
-                                 {origin, grid.toWorld(across) - origin, grid.toWorld(up) - origin},
-                                 ink));
+  texture_->SetInputData(painted(plane, ink));
   bar_->SetLookupTable(map);
-  bar_->SetLabelFormat(limit_mm < 1 ? "%.2f" : limit_mm < 50 ? "%.1f" : "%.0f");
+  bar_->SetLabelFormat(labelFormat(scale, reach_mm < 1    ? "%.2f"
+                                          : reach_mm < 50 ? "%.1f"
+                                                          : "%.0f")
+                           .c_str());
+  actor_->GetProperty()->SetOpacity(scale.opacity.value_or(1));
+}
+
+ClipPlane SliceLayer::planeSeenFrom(const Vec3& eye) const {
+  const Vec3 origin(quad_->GetOrigin()), normal(quad_->GetNormal());
+  return {origin, (eye - origin).dot(normal) < 0 ? Vec3(-normal) : normal};
+}
+
+bool SliceLayer::covers(const SurfaceField& field, const Vec3& point) const {
+  return std::abs(distanceAt(field, point)) < shown_ * field.grid.voxel;
 }
 
 void SliceLayer::setVisible(bool on) {
-  // Before the first update() a window system may want a frame: VTK fails on a texture of nothing.
+  // A window system may draw a frame before the first update(), and VTK fails on an empty texture.
   const bool made = texture_->GetNumberOfInputConnections(0) > 0;
   actor_->SetVisibility(on && made);
   bar_->SetVisibility(on && made && shows_distance_);

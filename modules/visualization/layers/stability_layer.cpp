@@ -6,19 +6,17 @@
 
 #include <vtkFloatArray.h>
 #include <vtkPointData.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 
 #include "visualization/surfaces/surface_data.h"
 #include "visualization/values/distance_map.h"
-#include "visualization/values/palette.h"
 #include "visualization/values/scalar_bar.h"
-#include "visualization/view/scene_furniture.h"
+#include "visualization/values/scene_setup.h"
 
 namespace patina {
 namespace {
 
-// One normal a vertex, however sharp the edge: a vertex has one ratio too.
+// One normal per vertex, even at sharp edges, because a vertex has one ratio.
 vtkSmartPointer<vtkFloatArray> vertexNormals(const TriangleMesh& mesh) {
   std::vector<Vec3> sum(mesh.positions.size(), Vec3::Zero());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
@@ -43,10 +41,11 @@ vtkSmartPointer<vtkFloatArray> vertexNormals(const TriangleMesh& mesh) {
 vtkSmartPointer<vtkLookupTable> stabilityColors() {
   const auto table = divergingColors();
   table->SetScaleToLog10();
-  table->SetRange(kLeastRatioShown, kMostRatioShown);
+  table->SetRange(kMinRatioShown, kMaxRatioShown);
   table->SetNanColor(palette::kToolShaft[0], palette::kToolShaft[1], palette::kToolShaft[2], 1);
-  table->SetBelowRangeColor(palette::kSlips[0], palette::kSlips[1], palette::kSlips[2], 1);
-  table->SetAboveRangeColor(palette::kQuiet[0], palette::kQuiet[1], palette::kQuiet[2], 1);
+  table->SetBelowRangeColor(palette::kUnstable[0], palette::kUnstable[1], palette::kUnstable[2], 1);
+  table->SetAboveRangeColor(palette::kSecondary[0], palette::kSecondary[1], palette::kSecondary[2],
+                            1);
   table->UseBelowRangeColorOn();
   table->UseAboveRangeColorOn();
   return table;
@@ -55,11 +54,10 @@ vtkSmartPointer<vtkLookupTable> stabilityColors() {
 StabilityLayer::StabilityLayer(vtkRenderer& scene, vtkRenderer& overlay)
     : actor_(surfaceActor(palette::kSurface)), bar_(scalarBar("K*/K")) {
   const auto colors = stabilityColors();
-  auto* mapper = vtkPolyDataMapper::SafeDownCast(actor_->GetMapper());
-  mapper->SetLookupTable(colors);
-  mapper->UseLookupTableScalarRangeOn();
-  mapper->ScalarVisibilityOn();
-  // Shine would shift colours that are to be read.
+  vtkPolyDataMapper& mapper = mapperOf(*actor_);
+  mapper.SetLookupTable(colors);
+  mapper.UseLookupTableScalarRangeOn();
+  mapper.ScalarVisibilityOn();
   actor_->GetProperty()->SetSpecular(0);
   actor_->GetProperty()->SetAmbient(0.3);
   scene.AddActor(actor_);
@@ -82,13 +80,13 @@ void StabilityLayer::update(const TriangleMesh& surface, const std::vector<float
   values->SetNumberOfValues(static_cast<vtkIdType>(ratio.size()));
   bool jumps = false, slips = false, untouched = false;
   for (std::size_t v = 0; v < ratio.size(); ++v) {
-    float shown = std::clamp(ratio[v], static_cast<float>(kLeastRatioShown),
-                             static_cast<float>(kMostRatioShown)); // a NaN stays
-    if (ratio[v] == kSlips) shown = 0.1F * static_cast<float>(kLeastRatioShown);
-    if (ratio[v] == kUntouched) shown = 10 * static_cast<float>(kMostRatioShown);
+    float shown = std::clamp(ratio[v], static_cast<float>(kMinRatioShown),
+                             static_cast<float>(kMaxRatioShown)); // NaN stays NaN
+    if (ratio[v] == kUnstable) shown = 0.1F * static_cast<float>(kMinRatioShown);
+    if (ratio[v] == kNotTouchable) shown = 10 * static_cast<float>(kMaxRatioShown);
     jumps = jumps || std::isnan(ratio[v]);
-    slips = slips || ratio[v] == kSlips;
-    untouched = untouched || ratio[v] == kUntouched;
+    slips = slips || ratio[v] == kUnstable;
+    untouched = untouched || ratio[v] == kNotTouchable;
     values->SetValue(static_cast<vtkIdType>(v), shown);
   }
   tags_ = jumps || slips || untouched;
@@ -96,12 +94,7 @@ void StabilityLayer::update(const TriangleMesh& surface, const std::vector<float
   bar_->SetDrawBelowRangeSwatch(slips);
   bar_->SetDrawAboveRangeSwatch(untouched);
   data->GetPointData()->SetScalars(values);
-  vtkPolyDataMapper::SafeDownCast(actor_->GetMapper())->SetInputData(data);
-}
-
-void StabilityLayer::setVisible(bool on) {
-  actor_->SetVisibility(on);
-  bar_->SetVisibility(on);
+  mapperOf(*actor_).SetInputData(data);
 }
 
 } // namespace patina

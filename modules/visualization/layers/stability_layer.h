@@ -1,4 +1,4 @@
-// Where a surface would buzz: K*(x)/K as colour (MATH 2.1.7).
+// Stability map: K*(x)/K as colour (MATH 2.1.7).
 #pragma once
 
 #include <vector>
@@ -13,26 +13,29 @@
 
 namespace patina {
 
-// Beyond these a colour no longer changes: there is no doubt left.
-inline constexpr double kLeastRatioShown = 0.25, kMostRatioShown = 4;
+// Range of the colours; beyond it stability is certain or excluded.
+inline constexpr double kMinRatioShown = 0.25, kMaxRatioShown = 4;
 
-// In the place of a ratio: where the tip slips off, and where nothing can be pressed.
-inline constexpr float kSlips = -1, kUntouched = -2;
+// Special values: the equilibrium is unstable; the vertex cannot be pressed.
+inline constexpr float kUnstable = -1, kNotTouchable = -2;
 
-// Logarithmic, pale at 1, warm below (buzzes), cool above; the construction of the distance map.
+// Logarithmic, pale at 1, warm below (unstable), cool above; built like the distance map.
 vtkSmartPointer<vtkLookupTable> stabilityColors();
 
 class StabilityLayer {
  public:
-  // scene: where the surface is; overlay: where the scalar bar is.
+  // scene: renderer of the surface; overlay: renderer of the scalar bar.
   StabilityLayer(vtkRenderer& scene, vtkRenderer& overlay);
 
-  // One ratio a vertex, or what stands in its place; NaN: the force jumps. Each of these that there
-  // is has its colour in the legend. Throws std::invalid_argument for another number of them.
+  // `ratio`: one value per vertex, or a special value; NaN: the force is discontinuous. The legend
+  // lists the special values that occur. Throws std::invalid_argument for a wrong count.
   void update(const TriangleMesh& surface, const std::vector<float>& ratio);
-  void setVisible(bool on);
-  bool hasTags() const { return tags_; }  // at the scale, which then needs more room
-  vtkActor& surface() { return *actor_; } // to be cut by the slice
+  void setVisible(bool on) {
+    actor_->SetVisibility(on);
+    bar_->SetVisibility(on);
+  }
+  bool hasTags() const { return tags_; }  // special values in the legend, which needs more space
+  vtkActor& surface() { return *actor_; } // the slice cuts it
   vtkScalarBarActor& bar() { return *bar_; }
 
  private:

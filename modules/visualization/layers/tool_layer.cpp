@@ -10,7 +10,6 @@
 #include <vtkCylinderSource.h>
 #include <vtkMatrix4x4.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkSphereSource.h>
@@ -22,12 +21,12 @@
 namespace patina {
 namespace {
 
-constexpr double kEdge = 6;      // of the picture, that arrow and number keep clear [pixels]
-constexpr int kBeside = 12;      // the number, of the arrow's end [pixels]
-constexpr double kUpright = 0.2; // of a force across the picture, by its direction
-constexpr double kSmallestForce = 0.005; // [N]; an arrow below it is a speck
-constexpr double kArrowPerNewton = 0.16; // of the picture's height
-constexpr double kLongestArrow = 0.32;   // same: what is more is said by the number
+constexpr double kEdge = 6;      // margin of arrow and number to the picture's edge [pixels]
+constexpr double kBeside = 12;   // distance of the number from the arrow's end [pixels of 72 dpi]
+constexpr double kUpright = 0.2; // sine below which a force counts as upright in the picture
+constexpr double kSmallestForce = 0.005; // smallest drawn force [N]
+constexpr double kArrowPerNewton = 0.16; // fraction of the picture's height
+constexpr double kLongestArrow = 0.32;   // same; larger forces show in the number only
 constexpr double kPointRadius = 0.013;   // same
 
 vtkSmartPointer<vtkActor> actorOf(vtkAlgorithm* source, const palette::Color& color,
@@ -54,7 +53,7 @@ vtkSmartPointer<vtkActor> unitBall(const palette::Color& color, double opacity) 
   return actorOf(source, color, opacity);
 }
 
-// Along +y from 0 to 1, radius 1 at the bottom and `top` at the end.
+// Rod along +y from 0 to 1, radius 1 at the bottom and `top` at the end.
 vtkSmartPointer<vtkActor> unitRod(const palette::Color& color) {
   const vtkNew<vtkCylinderSource> source;
   source->SetRadius(1);
@@ -64,7 +63,7 @@ vtkSmartPointer<vtkActor> unitRod(const palette::Color& color) {
   return actorOf(source, color, 1);
 }
 
-// Along +y, its base of radius 1 at 0 and its point at 1.
+// Cone along +y with a base of radius 1 at 0 and its apex at 1.
 vtkSmartPointer<vtkActor> unitCone(const palette::Color& color) {
   const vtkNew<vtkConeSource> source;
   source->SetRadius(1);
@@ -75,7 +74,7 @@ vtkSmartPointer<vtkActor> unitCone(const palette::Color& color) {
   return actorOf(source, color, 1);
 }
 
-// Takes +y to the segment from a to b, and the unit radius to `radius`.
+// Maps +y to the segment from a to b, and the unit radius to `radius`.
 void stretch(vtkActor& actor, const Vec3& a, const Vec3& b, double radius) {
   const Vec3 along = b - a;
   const double length = along.norm();
@@ -147,8 +146,8 @@ void ToolLayer::setVisible(bool on) {
   place();
 }
 
-void ToolLayer::setLettering(const Lettering& letters) {
-  Lettering larger = letters;
+void ToolLayer::setTextStyle(const TextStyle& letters) {
+  TextStyle larger = letters;
   larger.size += 3;
   write(*label_->GetTextProperty(), larger, palette::kForce, true);
   shaft_->GetProperty()->SetColor(palette::forVtk(letters.ground.shaft));
@@ -170,7 +169,7 @@ std::optional<Vec2> ToolLayer::inPicture(const Vec3& p) const {
   if (window == nullptr || window->GetSize()[0] <= 0) return std::nullopt;
   vtkCamera& camera = *overlay_.GetActiveCamera();
   if (!((p - Vec3(camera.GetPosition())).dot(Vec3(camera.GetDirectionOfProjection())) > 0))
-    return std::nullopt; // behind the eye
+    return std::nullopt; // behind the camera
   overlay_.SetWorldPoint(p[0], p[1], p[2], 1);
   overlay_.WorldToDisplay();
   const double* pixel = overlay_.GetDisplayPoint();
@@ -184,18 +183,20 @@ bool ToolLayer::isOutside(const Vec3& p) const {
   return pixel->minCoeff() < kEdge || pixel->x() > size[0] - kEdge || pixel->y() > size[1] - kEdge;
 }
 
-// Beyond the arrow's end, on the side that it points to, but in the picture and off its corner.
+// Places the number beyond the arrow's end, inside the picture and off its corner.
 void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newtons) {
   const auto at = inPicture(end);
   if (!at) return;
   char words[32];
   std::snprintf(words, sizeof words, " %.2f N ", newtons);
   label_->SetInput(words);
-  const double across = direction.dot(right_); // one that is upright changes no side
+  const double across = direction.dot(right_); // an upright force keeps the side
   if (std::abs(across) > kUpright) leftwards_ = across < 0;
   vtkTextProperty* text = label_->GetTextProperty();
   text->SetJustification(leftwards_ ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
-  int beside = leftwards_ ? -kBeside : kBeside, over = 0;
+  const double dpi = overlay_.GetRenderWindow()->GetDPI();
+  const int gap = static_cast<int>(std::lround(kBeside * std::max(1.0, dpi / 72)));
+  int beside = leftwards_ ? -gap : gap, over = 0;
   std::array<int, 4> box{};
   if (vtkTextRenderer::GetInstance()->GetBoundingBox(text, words, box.data(),
                                                      overlay_.GetRenderWindow()->GetDPI())) {
@@ -204,7 +205,7 @@ void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newto
     const Vec2 natural = *at + Vec2(beside - (leftwards_ ? wide : 0), -0.5 * high);
     Vec2 low(std::clamp(natural.x(), kEdge, std::max(kEdge, size[0] - kEdge - wide)),
              std::clamp(natural.y(), kEdge, std::max(kEdge, size[1] - kEdge - high)));
-    if (low.x() != natural.x()) { // it would lie on the arrow's head
+    if (low.x() != natural.x()) { // the number would cover the arrow's head
       const auto behind = inPicture(end - 0.1 * length_ * direction);
       const double over_it = behind && behind->y() > at->y() ? -high - kEdge : kEdge;
       low.y() = std::clamp(at->y() + over_it, kEdge, std::max(kEdge, size[1] - kEdge - high));
@@ -225,7 +226,7 @@ void ToolLayer::place() {
   const double radius = ballRadius();
   const double shaft_radius = 0.006 * length_;
   placeBall(*ball_, held, radius);
-  // The neck's base sits on the shaft and its point in the ball.
+  // The neck's base is on the shaft and its apex inside the ball.
   const Vec3 neck_end = held + lean_ * (0.8 * radius + 0.05 * length_);
   stretch(*neck_, neck_end, held, shaft_radius);
   stretch(*shaft_, neck_end, neck_end + lean_ * (0.32 * length_), shaft_radius);
@@ -234,7 +235,7 @@ void ToolLayer::place() {
   const bool near = sample_.contact || sample_.attracted;
   const Vec3 seen = seenContact(sample_);
   placeBall(*contact_, seen, 0.004 * length_);
-  // Without a length there is nothing to stretch: the rod would be its own metre.
+  // A segment of length zero would leave the rod at its own length of 1 m.
   const bool apart = (seen - held).norm() > 1e-4 * length_;
   if (apart) stretch(*stem_, held, seen, 0.0013 * length_);
   stretch(*spring_, sample_.tip, held, 0.0016 * length_);

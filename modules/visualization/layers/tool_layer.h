@@ -1,5 +1,5 @@
-// The tool as the hand feels it: held out by the surface, with what it hides (the true tip, the
-// contact point, the force) drawn over everything.
+// Draws the tool at the proxy, and in front of everything what the surface hides: the true tip, the
+// contact point and the force.
 #pragma once
 
 #include <optional>
@@ -10,37 +10,37 @@
 #include <vtkTextActor.h>
 
 #include "scene/tool_sample.h"
-#include "visualization/values/lettering.h"
+#include "visualization/values/text_style.h"
 
 namespace patina {
 
-// Where contact is seen: on the original surface below the VCP (K12). An offset and a tip's radius
-// are between the two; friction, which holds the VCP back from the tip, holds this point as well.
+// Contact point on the original surface below the VCP (K12). An offset and a tip's radius lie
+// between them; friction, which holds back the VCP, holds back this point too.
 Vec3 seenContact(const ToolSample& sample);
 
 class ToolLayer {
  public:
-  // scene: hidden by surfaces in front of it; overlay: never hidden.
+  // scene: hidden by surfaces in front; overlay: never hidden.
   ToolLayer(vtkRenderer& scene, vtkRenderer& overlay);
 
-  // Of the tip [m]; 0 = a point, drawn as a ball of constant size in the picture.
+  // Tip radius [m]; 0 = a point, drawn as a ball of constant size in the picture.
   void setTipRadius(double radius);
   void update(const ToolSample& sample);
-  // The shaft leans towards the viewer's upper right, so that it never hides its own tip; shaft and
-  // arrow keep their size in the picture, whatever the zoom.
+  // The shaft leans towards the viewer's upper right, so that it never hides its own tip. Shaft and
+  // arrow keep their size in the picture.
   void faceCamera(vtkCamera& camera);
   void setVisible(bool on);
-  void setLettering(const Lettering& letters);
-  // A square at the picture's lower left that the force's number keeps off [pixels].
+  void setTextStyle(const TextStyle& letters);
+  // Square at the picture's lower left that the force's number avoids [pixels].
   void setCorner(double side) { corner_ = side; }
-  // Of the force, for the camera last faced; nullopt where none is drawn.
+  // Tip of the force arrow for the last faceCamera(); nullopt if it is not drawn.
   std::optional<Vec3> arrowEnd() const;
 
  private:
   void place();
   double ballRadius() const;                // [m]
   double arrowLength(double newtons) const; // [m]
-  // In its pixels, for the overlay's camera; nullopt where there is no picture.
+  // Position in pixels for the overlay's camera; nullopt if there is no picture.
   std::optional<Vec2> inPicture(const Vec3& p) const;
   bool isOutside(const Vec3& p) const;
   void placeNumber(const Vec3& end, const Vec3& direction, double newtons);
@@ -50,8 +50,8 @@ class ToolLayer {
   vtkSmartPointer<vtkActor> ghost_, spring_, stem_, contact_, arrow_shaft_, arrow_head_;
   vtkSmartPointer<vtkTextActor> label_;
   ToolSample sample_;
-  Vec3 right_ = Vec3::UnitX(); // of the picture
-  bool leftwards_ = false;     // the force's number stands left of its arrow
+  Vec3 right_ = Vec3::UnitX(); // picture's right in the world
+  bool leftwards_ = false;     // the number is left of its arrow
   Vec3 lean_ = Vec3(0.4, 0.7, 0.6).normalized();
   double tip_radius_ = 0;
   double length_ = 0.1; // height of the picture at the focal point [m]

@@ -5,31 +5,30 @@
 
 #include <vtkCellArray.h>
 #include <vtkPoints.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 
-#include "visualization/view/scene_furniture.h"
+#include "visualization/values/scene_setup.h"
 
 namespace patina {
 namespace {
 
 constexpr double kHalf = 0.5;
-constexpr double kMiddle = 0.66; // of half a side: as far a side reaches before its edge begins
-constexpr double kAbove = 1.006; // of what is hot: just over the cube
+constexpr double kMiddle = 0.66; // half width of a side's middle part, in half sides
+constexpr double kAbove = 1.006; // scale of the highlight, just above the cube
 
 std::array<vtkProperty*, 6> facesOf(vtkAnnotatedCubeActor& cube) {
   return {cube.GetXPlusFaceProperty(),  cube.GetXMinusFaceProperty(), cube.GetYPlusFaceProperty(),
           cube.GetYMinusFaceProperty(), cube.GetZPlusFaceProperty(),  cube.GetZMinusFaceProperty()};
 }
 
-// Shaded a little, so that it is a body, and its letters can be read on every side.
+// Shades the cube slightly, so that its letters are legible on every side.
 void light(vtkProperty& property, double diffuse) {
   property.SetAmbient(1 - diffuse);
   property.SetDiffuse(diffuse);
   property.SetSpecular(0);
 }
 
-// From lo to hi of half a side.
+// Range of a patch along one axis, in half sides.
 std::array<double, 2> partOf(double component) {
   if (component == 0) return {-kMiddle, kMiddle};
   return component > 0 ? std::array{kMiddle, 1.} : std::array{-1., -kMiddle};
@@ -60,34 +59,34 @@ std::optional<Vec3> cubeSideAt(const Ray& ray) {
 
 ViewCube::ViewCube(vtkRenderer& corner)
     : corner_(corner), cube_(vtkSmartPointer<vtkAnnotatedCubeActor>::New()),
-      patches_(vtkSmartPointer<vtkPolyData>::New()), hot_(surfaceActor(palette::kTool)) {
+      patches_(vtkSmartPointer<vtkPolyData>::New()), highlight_(surfaceActor(palette::kTool)) {
   cube_->SetXPlusFaceText("+x");
   cube_->SetXMinusFaceText("-x");
   cube_->SetYPlusFaceText("+y");
   cube_->SetYMinusFaceText("-y");
   cube_->SetZPlusFaceText("+z");
   cube_->SetZMinusFaceText("-z");
-  cube_->SetZFaceTextRotation(90); // upright, as turnFrom() looks at it
+  cube_->SetZFaceTextRotation(90); // upright in the view of turnFrom()
   cube_->SetFaceTextScale(0.5);
   cube_->SetTextEdgesVisibility(0);
   cube_->GetCubeProperty()->EdgeVisibilityOn();
   cube_->GetCubeProperty()->SetLineWidth(1.5);
   light(*cube_->GetCubeProperty(), 0.2);
   for (vtkProperty* face : facesOf(*cube_)) light(*face, 0);
-  vtkPolyDataMapper::SafeDownCast(hot_->GetMapper())->SetInputData(patches_);
-  hot_->GetProperty()->LightingOff();
-  hot_->GetProperty()->SetOpacity(0.6);
+  mapperOf(*highlight_).SetInputData(patches_);
+  highlight_->GetProperty()->LightingOff();
+  highlight_->GetProperty()->SetOpacity(0.6);
   corner_.AddActor(cube_);
-  corner_.AddActor(hot_);
-  setHot(std::nullopt);
+  corner_.AddActor(highlight_);
+  setHighlighted(std::nullopt);
 }
 
 ViewCube::~ViewCube() {
   corner_.RemoveActor(cube_);
-  corner_.RemoveActor(hot_);
+  corner_.RemoveActor(highlight_);
 }
 
-void ViewCube::setGround(const palette::Ground& ground) {
+void ViewCube::setBackgroundStyle(const palette::BackgroundStyle& ground) {
   cube_->GetCubeProperty()->SetColor(palette::forVtk(ground.low));
   cube_->GetCubeProperty()->SetEdgeColor(palette::forVtk(ground.shaft));
   const auto faces = facesOf(*cube_);
@@ -95,7 +94,7 @@ void ViewCube::setGround(const palette::Ground& ground) {
     faces[i]->SetColor(palette::forVtk(legible(kAxisColors[i / 2], ground)));
 }
 
-void ViewCube::setHot(const std::optional<Vec3>& side) {
+void ViewCube::setHighlighted(const std::optional<Vec3>& side) {
   const vtkNew<vtkPoints> points;
   const vtkNew<vtkCellArray> quads;
   for (int axis = 0; side && axis < 3; ++axis) {
@@ -114,7 +113,7 @@ void ViewCube::setHot(const std::optional<Vec3>& side) {
   patches_->SetPoints(points);
   patches_->SetPolys(quads);
   patches_->Modified();
-  hot_->SetVisibility(side.has_value());
+  highlight_->SetVisibility(side.has_value());
 }
 
 } // namespace patina

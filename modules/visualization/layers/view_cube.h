@@ -1,5 +1,4 @@
-// A small cube in a corner that turns as the scene does, and whose sides, edges and corners say
-// from where to look.
+// View cube in a corner that rotates with the scene; its sides, edges and corners select a view.
 #pragma once
 
 #include <optional>
@@ -11,32 +10,33 @@
 #include <vtkSmartPointer.h>
 
 #include "core/types.h"
-#include "visualization/values/lettering.h"
-#include "visualization/view/camera.h"
+#include "visualization/values/camera.h"
+#include "visualization/values/text_style.h"
 
 namespace patina {
 
-// Where a ray meets the cube of side 1 about the origin: from the middle towards the side, edge or
-// corner that is there, each component -1, 0 or 1. Nullopt: it misses.
+// Direction from the centre to the side, edge or corner that a ray hits on the cube of side 1 about
+// the origin; each component is -1, 0 or 1. Nullopt: it misses.
 std::optional<Vec3> cubeSideAt(const Ray& ray);
 
 class ViewCube {
  public:
-  static constexpr double kDistance = 3.7; // of the corner's camera: it fits however it is turned
+  // distance of the corner's camera; the cube fits in any orientation
+  static constexpr double kDistance = 3.7;
 
-  explicit ViewCube(vtkRenderer& corner); // which outlives it
+  explicit ViewCube(vtkRenderer& corner); // it outlives this cube
   ~ViewCube();
   ViewCube(const ViewCube&) = delete;
   ViewCube& operator=(const ViewCube&) = delete;
 
-  void setGround(const palette::Ground& ground);
-  void setHot(const std::optional<Vec3>& side); // is drawn brighter; of cubeSideAt()
+  void setBackgroundStyle(const palette::BackgroundStyle& ground);
+  void setHighlighted(const std::optional<Vec3>& side); // side: see cubeSideAt(); draws it brighter
 
  private:
   vtkRenderer& corner_;
   vtkSmartPointer<vtkAnnotatedCubeActor> cube_;
   vtkSmartPointer<vtkPolyData> patches_;
-  vtkSmartPointer<vtkActor> hot_;
+  vtkSmartPointer<vtkActor> highlight_;
 };
 
 } // namespace patina

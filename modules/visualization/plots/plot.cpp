@@ -59,8 +59,8 @@ void setText(vtkTextProperty* text, int size, bool bold) {
   text->SetColor(palette::forVtk(palette::kText));
 }
 
-// VTK's own log ticks are sparse and crowd under small ranges: a decade each, with more between
-// them the fewer there are.
+// VTK's log ticks are sparse and crowd at small ranges. These have more ticks per decade, the fewer
+// decades there are.
 std::vector<double> ticksOfADecade(double decades) {
   if (decades < 1) return {1, 1.5, 2, 3, 4, 5, 7};
   if (decades <= 2) return {1, 2, 5};
@@ -133,7 +133,7 @@ void addSeries(vtkChartXY* chart, const PlotSeries& series, std::size_t index) {
   line->GetPen()->SetColorF(color[0], color[1], color[2]);
   line->GetBrush()->SetColorF(color[0], color[1], color[2]);
   line->SetWidth(series.line ? 2.2F : 1.0F);
-  // A second round through the colours is dashed, so that no two series look alike.
+  // Colours repeat with dashed lines, so that every series is distinct.
   if (series.line && index >= palette::kSeries.size())
     line->GetPen()->SetLineType(vtkPen::DASH_LINE);
   line->SetMarkerStyle(series.points ? marks[index % 5] : vtkPlotPoints::NONE);
@@ -153,7 +153,7 @@ Plot workPrecisionPlot(const WorkPrecisionTable& table) {
   std::vector<std::string> order;
   for (const WorkPrecisionRow& row : table.rows) {
     std::string key;
-    for (const auto& [knob, value] : row.knobs)
+    for (const auto& [knob, value] : row.settings)
       if (value.isString()) key += (key.empty() ? "" : ", ") + value.asString();
     if (key.empty()) key = table.study;
     if (groups.find(key) == groups.end()) order.push_back(key);

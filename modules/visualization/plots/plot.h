@@ -1,4 +1,4 @@
-// Plots of studies and recordings as PNG.
+// Writes plots of studies and recordings as PNG.
 #pragma once
 
 #include <filesystem>
@@ -11,24 +11,23 @@
 namespace patina {
 
 struct PlotSeries {
-  std::string name; // in the legend
+  std::string name; // name in the legend
   std::vector<double> x, y;
   bool points = true; // a mark at each value
   bool line = true;
 };
 
 struct Plot {
-  std::string title, x_label, y_label; // labels carry their unit: "time of one query [ns]"
-  bool log_x = false, log_y = false;   // values that are not positive are left out of a log axis
+  std::string title, x_label, y_label; // labels include the unit: "time of one query [ns]"
+  bool log_x = false, log_y = false;   // a log axis leaves out values that are not positive
   std::vector<PlotSeries> series;
 };
 
-// Error against time, both logarithmic. Rows that share every text-valued knob ("sampler") form one
-// series, in order of time; the numeric knobs ("resolution") run along it.
+// Error against time, both logarithmic. Rows with equal text settings ("sampler") form one series,
+// in order of time; numeric settings ("resolution") vary along it.
 Plot workPrecisionPlot(const WorkPrecisionTable& table);
 
-// Throws Error without a display or without a single value to draw, FileError if it cannot be
-// written.
+// Throws Error if there is no display or no value to draw, FileError if it cannot write.
 void writePlot(const Plot& plot, const std::filesystem::path& path,
                const PictureSize& size = {1100, 720});
 

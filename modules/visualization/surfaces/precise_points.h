@@ -1,4 +1,4 @@
-// Points that may lie far from the origin.
+// Points in double precision, for scenes far from the origin.
 #pragma once
 
 #include <vtkPoints.h>
@@ -6,9 +6,9 @@
 
 namespace patina {
 
-// Returns an empty list in double precision. VTK itself moves points that lie far from the origin
-// to about their middle before they become floats on the graphics card, and takes the way back into
-// the camera's matrix. That helps only if they were not rounded to floats before.
+// Returns an empty list in double precision. VTK shifts points that are far from the origin towards
+// it before it converts them to floats for the graphics card, and undoes the shift in the camera's
+// matrix. This requires points that were not rounded to floats before.
 inline vtkSmartPointer<vtkPoints> precisePoints() {
   auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetDataTypeToDouble();

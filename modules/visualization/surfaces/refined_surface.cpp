@@ -8,8 +8,8 @@
 namespace patina {
 namespace {
 
-// Area of the pieces over the square of the longest edge allowed: edges end up between half of it
-// and all of it.
+// Area of a piece over the square of the longest edge allowed: edges end between half of it and all
+// of it.
 constexpr double kPieceArea = 0.22;
 
 struct Piece {
@@ -22,7 +22,7 @@ struct Extent {
   double area, longest;
 };
 
-// About how many there would be. A sliver, halved in length, makes three that are as thin.
+// Estimates the number of pieces. A sliver halved in length gives three equally thin ones.
 double pieces(const std::vector<Extent>& extents, double max_edge) {
   constexpr double kSliver = 1.585; // log2 3
   double count = 0;
@@ -53,7 +53,7 @@ class Refiner {
   RefinedSurface take() { return std::move(result_); }
 
  private:
-  // The decision is the edge's own, so that both of its faces decide alike.
+  // Depends only on the edge, so that both its faces decide equally.
   bool isLong(std::int32_t a, std::int32_t b) const { return (at(a) - at(b)).norm() > max_edge_; }
   const Vec3& at(std::int32_t vertex) const {
     return result_.mesh.positions[static_cast<std::size_t>(vertex)];
@@ -67,7 +67,7 @@ class Refiner {
     return found->second;
   }
 
-  // Cuts the longest of the edges that are too long, so that pieces do not become thin.
+  // Bisects the longest of the edges that are too long (Rivara 1984), so that pieces stay compact.
   bool split(const Piece& piece) {
     std::size_t edge = 3;
     double longest = 0;

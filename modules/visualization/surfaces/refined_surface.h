@@ -1,4 +1,4 @@
-// A surface in triangles small enough to carry values at their corners.
+// Refines a surface so that its vertices can carry values.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,14 @@
 namespace patina {
 
 struct RefinedSurface {
-  TriangleMesh mesh;                // the same surface; with texture coordinates if it had them
-  CornerNormals normals;            // as smooth as the coarse surface's; not of unit length
-  std::vector<std::int32_t> parent; // of each triangle, its face in the mesh that was refined
+  TriangleMesh mesh;                // the same surface, with texture coordinates if present
+  CornerNormals normals;            // smooth like the coarse surface's; not of unit length
+  std::vector<std::int32_t> parent; // per triangle, its face in the original mesh
 };
 
 // Halves edges until none is longer than max_edge [m]; faces that share an edge share its new
-// vertices. Where that would give more than about `most` triangles, edges stay longer, but no edge
-// is ever joined. Triangles with a corner that is not finite are left out. Throws invalid_argument
-// unless max_edge > 0.
+// vertices. Edges stay longer if there would be more than about `most` triangles. Triangles with a
+// corner that is not finite are left out. Throws invalid_argument unless max_edge > 0.
 RefinedSurface refined(const TriangleMesh& mesh, double max_edge, std::size_t most = 400'000);
 
 } // namespace patina

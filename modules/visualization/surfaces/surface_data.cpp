@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
@@ -14,7 +15,7 @@
 namespace patina {
 namespace {
 
-// Twice the area times the unit normal: summing these weighs each face by its area.
+// Twice the area times the unit normal; a sum of these weights each face by its area.
 std::vector<Vec3> areaNormals(const TriangleMesh& mesh) {
   std::vector<Vec3> normals(mesh.triangles.size());
   for (std::size_t f = 0; f < normals.size(); ++f) {
@@ -26,7 +27,7 @@ std::vector<Vec3> areaNormals(const TriangleMesh& mesh) {
 
 // Corners around each vertex: those of vertex v are corners[first[v]] .. corners[first[v + 1] - 1].
 struct Fans {
-  std::vector<std::int32_t> first, corners; // a corner is 3 * face + which
+  std::vector<std::int32_t> first, corners; // a corner is 3 * face + index
 };
 
 Fans fansOf(const TriangleMesh& mesh, const std::vector<bool>& usable) {
@@ -57,7 +58,6 @@ vtkSmartPointer<vtkCellArray> cells(vtkTypeInt32Array* connectivity, std::size_t
   return array;
 }
 
-// What the corners of one vertex have in common is one point.
 struct Made {
   Vec3 normal;
   Vec2 uv;
@@ -74,7 +74,7 @@ vtkSmartPointer<vtkFloatArray> floats(const std::vector<float>& values, int comp
   return array;
 }
 
-// Corners with the same normal and coordinates share a point.
+// Merges corners of a vertex with the same normal and texture coordinates into one point.
 vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh,
                                        const CornerNormals& corner_normals, const CornerUvs* uvs,
                                        std::vector<std::int32_t>* vertex_of_point) {
@@ -87,7 +87,7 @@ vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh,
   std::vector<float> normals, coordinates;
   normals.reserve(mesh.positions.size() * 3);
   std::vector<std::int32_t> drawn_vertex(mesh.triangles.size() * 3, -1);
-  std::vector<Made> made; // of this vertex so far
+  std::vector<Made> made; // points of this vertex so far
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     made.clear();
     for (std::int32_t at = fans.first[v]; at < fans.first[v + 1]; ++at) {
@@ -125,6 +125,45 @@ vtkSmartPointer<vtkPolyData> splitData(const TriangleMesh& mesh,
   return data;
 }
 
+// Vertex clustering (Rossignac & Borrel 1993): merges the vertices in each cell of a grid with
+// `cells` along the longest side into their mean. Degenerate triangles and those with a corner that
+// is not finite are removed.
+TriangleMesh coarsened(const TriangleMesh& mesh, int cells) {
+  TriangleMesh coarse;
+  const Box3 box = bounds(mesh);
+  if (box.isEmpty()) return coarse;
+  const double side = std::max(box.sizes().maxCoeff() / cells, 1e-300);
+  std::unordered_map<std::int64_t, std::int32_t> vertex_in;
+  std::vector<double> count;
+  std::vector<std::int32_t> vertex_of(mesh.positions.size(), -1);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3& p = mesh.positions[v];
+    if (!p.allFinite() || !box.contains(p)) continue;
+    const Eigen::Matrix<std::int64_t, 3, 1> cell =
+        ((p - box.min()) / side).array().floor().cast<std::int64_t>();
+    const std::int64_t across = cells + 1;
+    const auto [at, is_new] =
+        vertex_in.try_emplace((cell[0] * across + cell[1]) * across + cell[2],
+                              static_cast<std::int32_t>(coarse.positions.size()));
+    if (is_new) {
+      coarse.positions.emplace_back(Vec3::Zero());
+      count.push_back(0);
+    }
+    vertex_of[v] = at->second;
+    coarse.positions[static_cast<std::size_t>(at->second)] += p;
+    ++count[static_cast<std::size_t>(at->second)];
+  }
+  for (std::size_t v = 0; v < count.size(); ++v) coarse.positions[v] /= count[v];
+  for (const Triangle& triangle : mesh.triangles) {
+    Triangle made;
+    for (std::size_t k = 0; k < 3; ++k) made[k] = vertex_of[static_cast<std::size_t>(triangle[k])];
+    const bool whole = made[0] >= 0 && made[1] >= 0 && made[2] >= 0;
+    if (whole && made[0] != made[1] && made[1] != made[2] && made[2] != made[0])
+      coarse.triangles.push_back(made);
+  }
+  return coarse;
+}
+
 } // namespace
 
 CornerNormals smoothNormals(const TriangleMesh& mesh, double crease_deg) {
@@ -145,7 +184,7 @@ CornerNormals smoothNormals(const TriangleMesh& mesh, double crease_deg) {
             fans.corners[static_cast<std::size_t>(other)] / 3)];
         if (own.dot(n) >= cosine * own.norm() * n.norm()) sum += n;
       }
-      // Corners that saw the same neighbours summed them in the same order: equal bit for bit.
+      // Corners with the same neighbours sum them in the same order: equal bit for bit.
       normals[corner / 3][corner % 3] = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3::Zero();
     }
   return normals;
@@ -163,6 +202,10 @@ vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, const CornerN
                                          std::vector<std::int32_t>& vertex_of_point) {
   vertex_of_point.clear();
   return splitData(mesh, normals, nullptr, &vertex_of_point);
+}
+
+vtkSmartPointer<vtkPolyData> coarseData(const TriangleMesh& mesh, int cells) {
+  return surfaceData(coarsened(mesh, cells));
 }
 
 vtkSmartPointer<vtkPolyData> plainData(const TriangleMesh& mesh) {

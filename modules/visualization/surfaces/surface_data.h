@@ -1,4 +1,4 @@
-// Triangles as VTK draws them.
+// Converts triangle meshes to VTK data.
 #pragma once
 
 #include <vtkPolyData.h>
@@ -9,24 +9,26 @@
 
 namespace patina {
 
-// Unit normals of each triangle's corners: smooth where neighbouring faces meet at less than
-// crease_deg; zero if nothing there has area, NaN for a triangle with a corner that is not finite.
+// Unit normals of each triangle's corners: smooth across edges below crease_deg; zero if no face
+// there has area, NaN for a triangle with a corner that is not finite.
 using CornerNormals = std::vector<std::array<Vec3, 3>>;
 CornerNormals smoothNormals(const TriangleMesh& mesh, double crease_deg = 40);
 
-// With point normals, points split where those of their corners differ. Triangles with a corner
-// that is not finite are left out.
+// Adds point normals; vertices are split into points if their corners' normals differ. Triangles
+// with a corner that is not finite are left out.
 vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, double crease_deg = 40);
 
-// The same with texture coordinates (one entry a triangle); points are split where these differ,
-// too.
+// The same with texture coordinates (one entry per triangle), which also split points.
 vtkSmartPointer<vtkPolyData> texturedData(const TriangleMesh& mesh, const CornerUvs& uvs);
 
-// With given normals, of any length, and the vertex of the mesh that each point came from.
+// Uses given normals of any length; also returns the mesh vertex of each point.
 vtkSmartPointer<vtkPolyData> surfaceData(const TriangleMesh& mesh, const CornerNormals& normals,
                                          std::vector<std::int32_t>& vertex_of_point);
 
-// Points and triangles as they are, without normals: for files.
+// A simplified mesh, with at most `cells` vertices along its longest side. Linear time.
+vtkSmartPointer<vtkPolyData> coarseData(const TriangleMesh& mesh, int cells);
+
+// Points and triangles unchanged, without normals: for files.
 vtkSmartPointer<vtkPolyData> plainData(const TriangleMesh& mesh);
 
 } // namespace patina

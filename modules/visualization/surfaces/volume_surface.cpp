@@ -1,5 +1,4 @@
 #include <cmath>
-#include <string>
 
 #include <vtkCellArray.h>
 #include <vtkDataArray.h>
@@ -12,8 +11,8 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
-#include "visualization/export/field_io.h"
-#include "visualization/export/volume_file.h"
+#include "visualization/files/field_io.h"
+#include "visualization/files/volume_file.h"
 
 namespace patina {
 namespace {
@@ -52,14 +51,14 @@ bool isWideUnsigned(int type) {
   return type == VTK_UNSIGNED_INT || type == VTK_UNSIGNED_LONG || type == VTK_UNSIGNED_LONG_LONG;
 }
 
-// Returns the value at which the surface is taken. If all values are whole and some equal `iso`,
-// the surface would pass through nodes: it would have triangles without area, and parts that meet
-// in a point. Such nodes then count as higher ones: the surface is taken half a step lower, or half
-// a step higher if no value is lower. An `iso` that differs by rounding gives the same surface.
+// Returns the value at which the surface is taken. If all values are integers and some equal `iso`,
+// the surface would pass through nodes and have degenerate triangles and parts that touch in a
+// point. Such nodes then count as higher: the value is lowered by half a step, or raised if no
+// value is lower. An `iso` that differs by rounding gives the same surface.
 double withoutTies(vtkDataArray* scalars, double iso) {
-  constexpr double kRounding = 1e-6; // of a step between whole numbers
+  constexpr double kTieRounding = 1e-6; // fraction of an integer step
   const double whole = std::round(iso);
-  if (!(std::abs(iso - whole) <= kRounding)) return iso;
+  if (!(std::abs(iso - whole) <= kTieRounding)) return iso;
   bool all_whole = true, tie = false, lower = false;
   withValues(scalars, [&](const auto* values, std::size_t count) {
     for (std::size_t i = 0; all_whole && i < count; ++i) {
@@ -86,7 +85,8 @@ TriangleMesh isoSurfaceOfVolume(const std::filesystem::path& path, double iso) {
   const int* nodes = image->GetDimensions();
   if (nodes[0] < 2 || nodes[1] < 2 || nodes[2] < 2)
     throw FileError(path.string(), 0, "is flat: a surface needs two nodes or more on each axis");
-  // Flying edges subtracts neighbours in the array's own type, where wide unsigned ones wrap.
+  // Flying edges (Schroeder et al. 2015) subtracts neighbours in the array's own type, in which
+  // wide unsigned values wrap.
   vtkSmartPointer<vtkDataArray> values = scalars;
   if (isWideUnsigned(scalars->GetDataType())) {
     values = vtkSmartPointer<vtkDoubleArray>::New();
@@ -121,7 +121,7 @@ TriangleMesh isoSurfaceOfVolume(const std::filesystem::path& path, double iso) {
                     "has no surface at " + formatNumber(iso) + ": its values run from " +
                         formatNumber(range.low) + " to " + formatNumber(range.high));
   }
-  // A distance grows outwards, a density inwards; contact wants outward normals of both.
+  // A distance grows outwards, a density inwards; contact needs outward normals for both.
   if (volume(mesh) < 0)
     for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;

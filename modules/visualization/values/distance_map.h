@@ -1,4 +1,4 @@
-// The diverging colours of signed quantities, shared by the slice, the nodes and the stability map.
+// Diverging colours of signed quantities, shared by slice, nodes and stability map.
 #pragma once
 
 #include <vtkLookupTable.h>
@@ -6,10 +6,9 @@
 
 namespace patina {
 
-// Perceptually even (Moreland's construction) from warm at the low end through pale to cool at the
-// high one; 255 entries, so that the middle has one of its own. The range is the caller's to set.
+// Perceptually uniform diverging map (Moreland 2009) from warm at the low end through pale to cool
+// at the high end; 255 entries, so that the middle has its own. The caller sets the range.
 vtkSmartPointer<vtkLookupTable> divergingColors();
-// From -limit_mm to +limit_mm.
 vtkSmartPointer<vtkLookupTable> distanceMap(double limit_mm);
 
 } // namespace patina

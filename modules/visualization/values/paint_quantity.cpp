@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kEntries = 255;
 
-// Colours at equal distances in CIELAB along the line through the palette's stations.
+// Colours equidistant in CIELAB along the line through the palette's stations.
 std::vector<Vec3> sequentialColors() {
   std::vector<Vec3> lab;
   for (const palette::Color& color : palette::kMuch) {
@@ -76,7 +76,7 @@ ValueRange rounded(const ValueRange& range) {
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   const double span = std::max({range.high - range.low, 0.2 * size, 1e-9});
   constexpr std::array<double, 10> kSteps{1, 1.25, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
-  constexpr double kSlack = 1e-6; // what rounding may have added to a round number
+  constexpr double kSlack = 1e-6; // rounding error of a round number
   for (double power = std::pow(10, std::floor(std::log10(span / 4)));; power *= 10)
     for (const double step : kSteps) {
       const double quarter = step * power;

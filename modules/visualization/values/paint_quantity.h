@@ -1,4 +1,4 @@
-// What of the paint a picture shows, in which colours and over which range.
+// Painted quantities of a picture, with colours and ranges.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,15 @@
 #include <vtkLookupTable.h>
 #include <vtkSmartPointer.h>
 
+#include "scene/color_scale.h"
 #include "scene/scene.h"
 
 namespace patina {
 
-// One at a time. The material's are in the order of MaterialChannel.
+// One is shown at a time. Material channels are in the order of MaterialChannel.
 enum class PaintQuantity : std::uint8_t {
-  color,  // as painted, over the object's own colour, with relief seen as relief
-  relief, // height as colour, and seen as relief
+  color,  // over the object's own colour, with shaded relief
+  relief, // height as colour, with shaded relief
   first_channel
 };
 inline constexpr std::size_t kFirstChannel = static_cast<std::size_t>(PaintQuantity::first_channel);
@@ -30,30 +31,24 @@ constexpr PaintQuantity quantityOf(MaterialChannel channel) {
   return static_cast<PaintQuantity>(static_cast<std::size_t>(channel) + kFirstChannel);
 }
 
-// Whether an object, or any object of a scene, has some of it painted. Relief is seen in colour,
-// too.
+// Returns true if the object, or any object, has this paint. Colour includes relief.
 bool hasPaint(const SceneObject& object, PaintQuantity quantity);
 bool hasPaint(const Scene& scene, PaintQuantity quantity);
 
-// As arrays in files are called: "color", "relief [m]", "stiffness [N/m]", "friction.static" ...
+// Names of arrays in files: "color", "relief [m]", "stiffness [N/m]", "friction.static" ...
 std::string arrayName(PaintQuantity quantity);
 
-struct ValueRange {
-  double low = 0, high = 1; // SI
-  bool operator==(const ValueRange&) const = default;
-};
-
-// The least range with round ends and quarters that holds both ends of this one; never empty.
+// Smallest range with round ends and quarters that contains this one; never empty.
 ValueRange rounded(const ValueRange& range);
 
-// Relief: diverging, its pale middle at 0 whatever the range. Material: sequential, dark is much.
-// Perceptually even, both. Range in SI.
+// Relief: diverging, pale at 0 in any range. Material: sequential, dark is high. Both are
+// perceptually uniform. Range in SI.
 vtkSmartPointer<vtkLookupTable> paintColors(PaintQuantity quantity, const ValueRange& range);
 
-// Title and factor of a scalar bar: heights and roughness are read in mm or micrometres.
+// Title and factor of a scalar bar: heights and roughness are shown in mm or micrometres.
 struct ReadingUnit {
   std::string title;
-  double per_si = 1;
+  double display_per_si = 1;
 };
 ReadingUnit readingUnit(PaintQuantity quantity, const ValueRange& range);
 

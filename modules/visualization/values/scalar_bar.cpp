@@ -9,7 +9,7 @@
 
 namespace patina {
 
-// With an empty line below, or the bar would touch it.
+// An empty line below keeps the title off the bar.
 void setTitle(vtkScalarBarActor& bar, const std::string& title) {
   bar.SetTitle((title + "\n").c_str());
 }
@@ -24,21 +24,20 @@ vtkSmartPointer<vtkScalarBarActor> scalarBar(const std::string& title) {
     text->ShadowOff();
   }
   bar->GetTitleTextProperty()->BoldOn();
-  // Of what is no value: a tag beside its swatch.
+  // Tags of special values beside their swatches.
   bar->GetAnnotationTextProperty()->ShallowCopy(bar->GetLabelTextProperty());
   bar->SetBarRatio(0.22);
-  // Its own plate: what lies behind never mixes with the colours that are read.
+  // Opaque, so that the scene does not mix with the colours.
   bar->DrawBackgroundOn();
-  bar->DrawFrameOn(); // seen where the ground is as light as the plate
   bar->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   return bar;
 }
 
-double scalarBarShare(int wide, const Lettering& letters) {
+double scalarBarShare(int wide, const TextStyle& letters) {
   return wide > 0 ? std::clamp(8.8 * letters.pixels / wide, 0.12, 0.3) : 0.12;
 }
 
-void placeScalarBar(vtkScalarBarActor& bar, int place, const Lettering& letters,
+void placeScalarBar(vtkScalarBarActor& bar, int place, const TextStyle& letters,
                     const std::array<int, 2>& size) {
   const auto [wide, high] = size;
   const double share = scalarBarShare(wide, letters);
@@ -47,15 +46,16 @@ void placeScalarBar(vtkScalarBarActor& bar, int place, const Lettering& letters,
   bar.SetWidth(share - 0.01);
   bar.SetHeight(height);
   bar.SetPosition(1 - share * (place + 1), 0.52 - height / 2);
-  // As many numbers as stand apart.
+  // As many numbers as fit.
   bar.SetNumberOfLabels(std::clamp(static_cast<int>((height / line - 5) / 1.8), 2, 5));
-  // Half of the first and of the last number is beyond the colours: it stays on the plate.
-  bar.SetTextPad(letters.pixels);
-  for (vtkTextProperty* text : {bar.GetTitleTextProperty(), bar.GetLabelTextProperty()})
-    write(*text, letters, letters.ground.text, false);
+  bar.SetTextPad(0); // with VTK's padding the numbers would not stand at their colours
+  if (*bar.GetLabelFormat() != ' ')
+    bar.SetLabelFormat((std::string("  ") + bar.GetLabelFormat() + " ").c_str());
+  write(*bar.GetTitleTextProperty(), letters, letters.ground.text, true); // above the background
+  write(*bar.GetLabelTextProperty(), letters, letters.ground.text, false);
   write(*bar.GetAnnotationTextProperty(), letters, letters.ground.text, true);
-  bar.GetBackgroundProperty()->SetColor(palette::forVtk(letters.ground.plate));
-  bar.GetFrameProperty()->SetColor(palette::forVtk(palette::kQuiet));
+  bar.GetBackgroundProperty()->SetColor(palette::forVtk(letters.ground.text_background));
+  bar.SetDrawBackground(letters.ground.plates);
 }
 
 } // namespace patina

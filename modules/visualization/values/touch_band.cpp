@@ -5,7 +5,7 @@
 namespace patina {
 namespace {
 
-// isoSurface() leaves out cells with a node beyond the band; within this margin none is needed.
+// isoSurface() skips cells with a node beyond the band; within this margin there is none.
 double reach(const SurfaceField& field) {
   return (field.band - 2) * field.grid.voxel;
 }

@@ -1,4 +1,4 @@
-// The band around the surface that an offset or a magnet acts in (K12, K13).
+// Band around the surface in which an offset or a magnet acts (K12, K13).
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@ struct TouchBand {
   bool operator==(const TouchBand&) const = default;
 };
 
-// nullopt if the surface is felt where it is.
+// nullopt if there is neither offset nor magnet.
 std::optional<TouchBand> touchBand(const HapticProperties& haptics);
 
-// Whether the field holds the iso-surface at the band's edge without a gap.
+// Returns true if the field contains the whole iso-surface at the band's edge.
 bool isStored(const TouchBand& band, const SurfaceField& field);
 
-// "offset 2 mm"; where the edge is not stored, that it is not drawn and why.
+// "offset 2 mm"; if the edge is not stored, also that it is not drawn and why.
 std::string bandLegend(const TouchBand& band, const SurfaceField& field);
 const palette::Color& bandColor(const TouchBand& band);
 

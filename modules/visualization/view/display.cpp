@@ -17,7 +17,7 @@ void requireDisplay(std::chrono::milliseconds patience) {
   const char* value = std::getenv("DISPLAY");
   if (value == nullptr || *value == '\0')
     throw Error("pictures need an X display and DISPLAY is not set" + remedy);
-  // What draws in software ends the program where it cannot have this much.
+  // Software OpenGL ends the program if it cannot allocate this much.
   if (memoryIsLimited()) requireMemory(400e6, "a picture");
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + patience;
@@ -29,8 +29,8 @@ void requireDisplay(std::chrono::milliseconds patience) {
   if (connection == nullptr)
     throw Error("the X display " + std::string(value) + " does not answer" + remedy);
   // The first connection stays open until the process ends: an X server without the option -noreset
-  // starts afresh when its last client leaves, and VTK, which opens and closes connections of its
-  // own, aborts if it comes back in that moment.
+  // restarts after its last client leaves, and VTK, which opens and closes its own connections,
+  // aborts if it connects at that moment.
   static Display* const held = connection;
   if (held != connection) XCloseDisplay(connection);
 }

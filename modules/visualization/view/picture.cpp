@@ -56,11 +56,11 @@ void renderView(View& view, const PictureSize& size, const std::filesystem::path
   window->SetSize(size.width, size.height);
   view.attachTo(*window);
   view.prepare();
-  view.fit(); // the picture's own proportions
+  view.fit(); // for the picture's aspect ratio
   view.prepare();
   window->Render();
   writeWindowPng(*window, path);
-  // The renderers outlive the window and would go on pointing to it.
+  // The renderers outlive the window and would keep a pointer to it.
   while (vtkRenderer* renderer = window->GetRenderers()->GetFirstRenderer())
     window->RemoveRenderer(renderer);
 }

@@ -1,4 +1,4 @@
-// Pictures without a window.
+// Renders pictures without a window.
 #pragma once
 
 #include <filesystem>

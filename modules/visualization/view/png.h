@@ -1,4 +1,4 @@
-// Shared by pictures and plots; not for other modules.
+// Shared by pictures and plots; internal to the module.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 namespace patina {
 
 void checkPictureSize(const PictureSize& size); // throws Error
-// What the window last drew. Throws Error if that is a single colour.
+// Writes the window's last frame. Throws Error if it has a single colour.
 void writeWindowPng(vtkRenderWindow& window, const std::filesystem::path& path);
 
 } // namespace patina

@@ -1,4 +1,4 @@
-// The picture of a scene: one object a layer, no window and no Qt. UI thread only.
+// Picture of a scene with one object per layer. No window and no Qt. UI thread only.
 #pragma once
 
 #include <memory>
@@ -8,32 +8,35 @@
 
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkSmartPointer.h>
 
 #include "field/store/surface_field.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "scene/scene.h"
 #include "scene/tool_sample.h"
+#include "visualization/layers/annotation_layer.h"
 #include "visualization/layers/brush_cursor.h"
 #include "visualization/layers/clip_layer.h"
 #include "visualization/layers/mirror_layer.h"
 #include "visualization/layers/paint_layer.h"
+#include "visualization/values/figure.h"
+#include "visualization/values/slice_position.h"
 #include "visualization/values/touch_band.h"
-#include "visualization/view/view_options.h"
+#include "visualization/values/view_options.h"
 
 namespace patina {
 
-// A plane of the field: normal to an axis, at a fraction of the grid's extent along it.
-struct SlicePlace {
-  int axis = 1;          // 0 = x, 1 = y, 2 = z
-  double position = 0.5; // 0 .. 1
+// Part of the view cube or of a plane's handle under the pointer.
+struct HoveredPart {
+  std::optional<Vec3> cube_side;
+  std::optional<ClipPart> clip; // belongs to the clip plane or the slice
+  bool of_slice = false;
+  bool operator==(const HoveredPart&) const = default;
 };
 
-// What of the cube in the corner, or of the clip plane's handle, is pointed at.
-struct HotPart {
-  std::optional<Vec3> cube_side;
-  std::optional<ClipPart> clip;
-  bool operator==(const HotPart&) const = default;
+// The drawn thing that is in front on a view ray, and where.
+struct Front {
+  Layer layer = Layer::mesh; // mesh (also where paint or stability is drawn), iso or slice
+  Vec3 point = Vec3::Zero(); // [m]
 };
 
 class SceneView {
@@ -43,64 +46,80 @@ class SceneView {
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
-  // Adds the two renderers (scene, and what must never be hidden by it) to a window.
+  // Adds the two renderers (the scene, and an overlay that nothing hides) to a window.
   void attachTo(vtkRenderWindow& window);
   vtkRenderer& renderer();
 
-  // A layer whose thing is absent shows nothing. Neither call moves the camera; see fit().
+  // A layer without data shows nothing. Neither call moves the camera; see fit().
   void setMesh(std::shared_ptr<const TriangleMesh> mesh);   // nullptr = none
   void setField(std::shared_ptr<const SurfaceField> field); // nullptr = none
   void setIso(double iso);                                  // [m]
-  void setSlice(const SlicePlace& place);
-  // Surfaces are drawn behind the plane only, which has a handle; nullopt: whole.
+  void setSlice(const SlicePosition& place);
+  // Plane of the slice; its origin is nearest to the middle of the field. Nullopt: not shown.
+  std::optional<ClipPlane> slicePlane() const;
+  void setSliceHandle(bool on);
+  // Hides surfaces in front of the plane and shows its handle; nullopt: no clipping.
   void setClip(const std::optional<ClipPlane>& plane);
-  // Of the plane that there is: the length of its handle [m].
-  double clipLength() const;
-  // Of the layer band; nullopt = the surface is felt where it is.
+  // Length of the handle of the clip plane, or of the slice [m].
+  double handleLength(bool of_slice) const;
+  // A straight line in front of everything; nullopt: none.
+  void setLine(const std::optional<std::pair<Vec3, Vec3>>& ends);
+  // For the layer band; nullopt = neither offset nor magnet.
   void setBand(const std::optional<TouchBand>& band);
-  // Of the layer stability, which takes the mesh's place: a surface and one K*/K a vertex. nullptr
-  // = none, and the mesh is shown.
+  // For the layer stability, which replaces the mesh: a surface and one K*/K per vertex. nullptr =
+  // none, and the mesh is shown.
   void setStability(const TriangleMesh* surface, const std::vector<float>& ratio);
-  // Paint of the layers color, relief and material; call it after every edit and dab (only what
-  // changed is drawn anew). `scene` is the one whose objects, one after another, are the mesh;
-  // objects without paint of what is shown stay in the layer mesh. A scene without paint costs
-  // nothing. See PaintLayer.
+  // Paint of the layers color, relief and material; call it after every edit and dab (only changes
+  // are drawn). The objects of `scene`, one after another, must form the mesh; objects without the
+  // shown paint stay in the layer mesh. A scene without paint costs nothing. See PaintLayer.
   void setPaint(const Scene& scene,
                 const std::vector<std::shared_ptr<const TexelMap>>& texels = {});
-  // nullopt: the range follows what is painted.
-  void lockPaintRange(PaintQuantity quantity, std::optional<ValueRange> range);
-  ValueRange paintRange(PaintQuantity quantity) const; // as shown
+  // Colours, ranges and opacities of slice, iso-surface, mesh and paint.
+  void setColors(const ColorScales& scales);
+  // Range of the colours of a drawn thing, after prepare(); nullopt if it has none.
+  std::optional<ValueRange> shownRange(const std::string& thing) const;
+  ValueRange paintRange(PaintQuantity quantity) const; // range shown
   bool hasPaint(PaintQuantity quantity) const;
-  void setBrush(const std::optional<BrushPlace>& place);   // nullopt: no cursor
-  void setMirror(const std::optional<MirrorPlace>& place); // of strokes; nullopt: none
+  void setBrush(const std::optional<BrushCursorState>& place); // nullopt: no cursor
+  void setMirror(const std::optional<MirrorState>& place);     // mirror of strokes; nullopt: none
+  void setAnnotations(const std::vector<Annotation>& annotations); // measurements and pins
   void setTipRadius(double radius); // [m]; 0 = a point, drawn as a small sphere
   void setTool(const ToolSample& sample);
 
   void show(Layer layer, bool on);
   void showOnly(const std::set<Layer>& layers);
   bool shown(Layer layer) const;
+  // Returns what of mesh, iso-surface and slice is in front on the ray, to a hundredth of a voxel;
+  // parts that the slice or the clip plane hides do not count. nullopt: none, or no field.
+  std::optional<Front> frontAlong(const Ray& view_ray) const;
+  // Returns the mesh's visible vertex nearest to the ray, if it is nearer than the other ray is at
+  // its depth.
+  std::optional<Vec3> vertexNear(const Ray& view_ray, const Ray& reach) const;
 
-  // A cube in the corner in place of the axes. Its side that is at a place of the picture, 0 .. 1
+  // Shows the view cube instead of the axes. cubeSideAt() takes a position 0 .. 1 in the picture
   // from the lower left; see ViewCube.
   void showCube(bool on);
   std::optional<Vec3> cubeSideAt(double x, double y) const;
-  void setHot(const HotPart& hot); // of cube and handle; is drawn brighter
+  void setHighlighted(const HoveredPart& hovered); // draws part of cube or handle brighter
 
-  void setGround(const palette::Ground& ground); // light, unless said
-  void setView(ViewPreset view);                 // and fit
-  // While the camera moves and that takes long: bodies are drawn at half the resolution, and a mesh
-  // of many triangles with fewer, once these are made, which is done behind the picture.
-  void setMoving(bool moving);
-  void fit();          // everything in the picture, from the present direction
-  Box3 extent() const; // of mesh and field; never empty
+  void setBackgroundStyle(const palette::BackgroundStyle& ground); // default: light
+  const palette::BackgroundStyle& backgroundStyle() const;
+  // Leaves out these parts, cursor and handles until nullopt is set.
+  void setFigureParts(const std::optional<std::set<FigurePart>>& without);
+  void setView(ViewPreset view); // resets the camera
+  // Level of detail while the camera moves, if rendering is slow: bodies at half the resolution,
+  // and a large mesh with fewer triangles once a background task has made it.
+  void setInteracting(bool moving);
+  void fit();          // everything, from the present direction
+  Box3 extent() const; // extent of mesh and field; never empty
 
-  // Call before a render: places what depends on the camera. True if something changed since the
-  // last call.
+  // Call before a render: updates everything that depends on the camera. Returns true if something
+  // changed since the last call.
   bool prepare();
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<Impl> my_;
 };
 
 } // namespace patina

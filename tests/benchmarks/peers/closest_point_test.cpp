@@ -30,7 +30,7 @@ double cpuSeconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-// By the Voronoi regions of corners and edges.
+// Closest point by the Voronoi regions of corners and edges.
 Vec3f closestInFloat(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   const Vec3f ab = b - a, ac = c - a;
   const float ab_a = ab.dot(p - a), ac_a = ac.dot(p - a);
@@ -81,7 +81,7 @@ class EmbreeTree {
     query.radius = std::numeric_limits<float>::infinity();
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    // The callback gets it back as it was given, and only reads.
+    // The callback gets it back unchanged and only reads it.
     rtcPointQuery(scene_, &query, &context, tryFace, const_cast<EmbreeTree*>(this));
     return static_cast<double>(query.radius);
   }
@@ -107,7 +107,7 @@ class EmbreeTree {
   RTCScene scene_ = rtcNewScene(device_);
 };
 
-// Anywhere about the surface, up to a tenth of the unit away along each axis.
+// Points lie around the surface, up to a tenth of the unit away along each axis.
 std::vector<Vec3> pointsNear(const TriangleMesh& mesh, int count) {
   std::mt19937 random(5);
   std::uniform_int_distribution<std::size_t> face(0, mesh.triangles.size() - 1);

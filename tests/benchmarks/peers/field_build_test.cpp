@@ -13,7 +13,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
-#include "field/build/build_field.h"
+#include "field/construction/build_field.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh/shapes.h"
 #include "support/shared_data.h"

@@ -4,11 +4,15 @@
 #include <apriltag/tag36h11.h>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
+#if __has_include(<opencv2/objdetect/aruco_detector.hpp>)
+#include <opencv2/objdetect/aruco_detector.hpp>
+#else
+#include <opencv2/aruco.hpp>
+#endif
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/tracking/lens.h"
-#include "acquisition/vision/aruco.h"
 #include "support/least_time.h"
 #include "support/rendered_rig.h"
 #include "support/shared_data.h"
@@ -16,8 +20,7 @@
 namespace patina {
 namespace {
 
-// Corners of a peer, in the marker's order, straightened by our lens; the pose follows as ours
-// does.
+// Corners of a peer, in the marker's order, undistorted by our lens; the pose follows as for ours.
 using Corners = std::vector<std::pair<int, std::array<Vec2, 4>>>;
 
 std::vector<SeenMarker> seenOf(const Corners& corners, const Camera& camera) {
@@ -25,7 +28,7 @@ std::vector<SeenMarker> seenOf(const Corners& corners, const Camera& camera) {
   for (const auto& [id, pixel] : corners) {
     SeenMarker marker{"apriltag_36h11", id, 0, {}, 0};
     for (std::size_t i = 0; i < 4; ++i)
-      marker.corner[i] = {pixel[i], straightened(camera, pixel[i]).value(),
+      marker.corner[i] = {pixel[i], undistortedPoint(camera, pixel[i]).value(),
                           10 * Eigen::Matrix2d::Identity()};
     seen.push_back(marker);
   }
@@ -55,8 +58,8 @@ class AprilTag {
     for (int i = 0; i < zarray_size(found); ++i) {
       apriltag_detection_t* one = nullptr;
       zarray_get(found, i, &one);
-      // Its first pixel's middle is (0.5, 0.5), its corners go the other way round from below, and
-      // OpenCV has the codes turned by half a turn.
+      // The centre of its first pixel is (0.5, 0.5), its corners run in the opposite order from
+      // below, and OpenCV's codes are rotated by half a turn.
       std::array<Vec2, 4> pixel;
       for (std::size_t k = 0; k < 4; ++k)
         pixel[k] = Vec2(one->p[(5 - k) % 4][0] - 0.5, one->p[(5 - k) % 4][1] - 0.5);
@@ -70,6 +73,22 @@ class AprilTag {
   apriltag_family_t* family_;
   apriltag_detector_t* detector_;
 };
+
+// OpenCV 4.7 changed the interface of its markers.
+void findAruco(const cv::Mat& view, int family, int refinement,
+               std::vector<std::vector<cv::Point2f>>& corners, std::vector<int>& ids) {
+#if __has_include(<opencv2/objdetect/aruco_detector.hpp>)
+  cv::aruco::DetectorParameters parameters;
+  parameters.cornerRefinementMethod = refinement;
+  cv::aruco::ArucoDetector(cv::aruco::getPredefinedDictionary(family), parameters)
+      .detectMarkers(view, corners, ids);
+#else
+  const auto parameters = cv::aruco::DetectorParameters::create();
+  parameters->cornerRefinementMethod = refinement;
+  cv::aruco::detectMarkers(view, cv::aruco::getPredefinedDictionary(family), corners, ids,
+                           parameters);
+#endif
+}
 
 Corners findByAruco(const GreyFrame& image, int refinement) {
   const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
@@ -112,16 +131,16 @@ void compare(const Camera& camera, int frames) {
                   s = by(findByAruco(images.back(), cv::aruco::CORNER_REFINE_SUBPIX)),
                   o = rig.track(images.back());
     EXPECT_EQ(o.verdict, RigVerdict::seen) << i;
-    // Only where all have one: what another misses is not held against it here.
+    // Only frames in which all have a pose count; misses of the others are not judged here.
     if (a.verdict != RigVerdict::seen || s.verdict != RigVerdict::seen) continue;
     ours.add(o, known), aprils.add(a, known), arucos.add(s, known);
   }
   ASSERT_GT(ours.poses, frames / 2);
   cv::setNumThreads(1);
   const auto least =
-      test::leastSeconds({[&] { (void)rig.track(images[0]); }, [&] { (void)april.find(images[0]); },
-                          [&] { (void)findByAruco(images[0], cv::aruco::CORNER_REFINE_SUBPIX); }},
-                         4, 6);
+      test::minSeconds({[&] { (void)rig.track(images[0]); }, [&] { (void)april.find(images[0]); },
+                        [&] { (void)findByAruco(images[0], cv::aruco::CORNER_REFINE_SUBPIX); }},
+                       4, 6);
   std::printf(
       "%d x %d, %d of %d frames: tip rms %.4f mm, AprilTag %.4f, SUBPIX %.4f; %.2f ms, %.2f, "
       "%.2f\n",
@@ -154,7 +173,7 @@ TEST(MarkerPeers, PhotographShowsNoFewerThanAprilTagFinds) {
   EXPECT_GE(thorough, whole);
 }
 
-// How far corners are from the best picture of the plane that they lie on [px].
+// Distance of corners from the best image of their plane [px].
 double planarResidual(const std::vector<Vec2>& board, const std::vector<Vec2>& pixel) {
   std::vector<cv::Point2d> from, to, moved;
   for (std::size_t i = 0; i < board.size(); ++i) {
@@ -185,7 +204,7 @@ TEST(MarkerPeers, MarkersOfTheSharedBoardLieOnAPlane) {
   for (const SeenMarker& marker : findMarkers(image, {CodeBook(markerFamily("6x6_250"))}, &camera))
     for (std::size_t i = 0; i < 4; ++i) {
       board.push_back(cornerOn(marker.id, i));
-      ours.push_back(marker.corner[i].straight);
+      ours.push_back(marker.corner[i].undistorted);
     }
   const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.row(0)));
   std::vector<std::vector<cv::Point2f>> found;
@@ -194,7 +213,7 @@ TEST(MarkerPeers, MarkersOfTheSharedBoardLieOnAPlane) {
   for (std::size_t m = 0; m < ids.size(); ++m)
     for (std::size_t i = 0; i < 4; ++i) {
       theirs_board.push_back(cornerOn(ids[m], i));
-      theirs.push_back(straightened(camera, Vec2(found[m][i].x, found[m][i].y)).value());
+      theirs.push_back(undistortedPoint(camera, Vec2(found[m][i].x, found[m][i].y)).value());
     }
   const double own = planarResidual(board, ours), subpix = planarResidual(theirs_board, theirs);
   std::printf("planar residual %.3f px of %zu corners, SUBPIX %.3f of %zu\n", own, ours.size(),

@@ -77,14 +77,14 @@ class Vtk {
 };
 
 struct Case {
-  double degrees = 15, metres = 0.01, noise = 5e-4, strays = 0;
+  double degrees = 15, metres = 0.01, noise = 5e-4, deviatesFromChord = 0;
   int rounds = 20;
   int vtk_every = 1; // rounds; its time needs fewer than our rate of success
 };
 
 struct Outcome {
   std::vector<double> ours, theirs;               // errors [m]
-  std::vector<double> our_seconds, their_seconds; // of processor time
+  std::vector<double> our_seconds, their_seconds; // processor time [s]
   int we_found = 0, they_found = 0;
 };
 
@@ -97,7 +97,8 @@ Outcome compare(const SurfaceTarget& target, const Case& one) {
     auto path = truth;
     for (Vec3& p : path) {
       p += draw.normal(one.noise);
-      if (draw.uniform(0, 1) < one.strays) p += draw.uniform(5e-3, 20e-3) * draw.direction();
+      if (draw.uniform(0, 1) < one.deviatesFromChord)
+        p += draw.uniform(5e-3, 20e-3) * draw.direction();
     }
     const Pose start = draw.off(truth, one.degrees, one.metres);
     RegistrationOptions options;
@@ -118,7 +119,7 @@ Outcome compare(const SurfaceTarget& target, const Case& one) {
   std::printf(
       "%g degrees, %g mm, noise %g mm, %g %% astray: error %.4f mm in %.2f ms, %d of %d; VTK "
       "%.4f mm in %.1f ms, %d of %zu\n",
-      one.degrees, 1e3 * one.metres, 1e3 * one.noise, 100 * one.strays,
+      one.degrees, 1e3 * one.metres, 1e3 * one.noise, 100 * one.deviatesFromChord,
       1e3 * percentiles(outcome.ours).p50, 1e3 * percentiles(outcome.our_seconds).p50,
       outcome.we_found, one.rounds, 1e3 * percentiles(outcome.theirs).p50,
       1e3 * percentiles(outcome.their_seconds).p50, outcome.they_found, outcome.theirs.size());
@@ -134,12 +135,12 @@ TEST(RegistrationPeers, AsExactAsVtkInATwentyFifthOfItsTime) {
   }
 }
 
-TEST(RegistrationPeers, WithoutNoiseFiftyNanometres) {
+TEST(RegistrationPeers, ErrorWithoutNoiseIsBelowFiftyNanometres) {
   const Outcome outcome = compare(SurfaceTarget(dinosaur(), 0), {.noise = 0, .rounds = 10});
   EXPECT_LE(percentiles(outcome.ours).max, 5e-8);
 }
 
-TEST(RegistrationPeers, FromSixtyDegreesInHalfOfVtksTime) {
+TEST(RegistrationPeers, ConvergesFromSixtyDegreesInHalfOfVtksTime) {
   for (const double noise : {1e-4, 5e-4}) {
     const Outcome outcome =
         compare(SurfaceTarget(dinosaur(), 0),
@@ -149,16 +150,16 @@ TEST(RegistrationPeers, FromSixtyDegreesInHalfOfVtksTime) {
   }
 }
 
-TEST(RegistrationPeers, AFifthAstray) {
+TEST(RegistrationPeers, FindsThePoseAmongOneFifthOutliers) {
   for (const double degrees : {15., 30.}) {
     const Outcome outcome =
         compare(SurfaceTarget(dinosaur(), 0),
-                {.degrees = degrees, .strays = 0.2, .rounds = 40, .vtk_every = 20});
+                {.degrees = degrees, .deviatesFromChord = 0.2, .rounds = 40, .vtk_every = 20});
     EXPECT_GE(outcome.we_found, 39);
   }
 }
 
-// Along what a surface does not see a path goes no farther than nearest points take it.
+// Along unobservable motions a path moves no farther than closest points would take it.
 TEST(RegistrationPeers, SlidesNoFartherThanVtk) {
   struct Shape {
     const char* name;

@@ -1,4 +1,4 @@
-// Prints how a contact method does on the course, one row a scene and iso.
+// Prints the figures of a contact method in the trials, one row per scene and iso.
 //   contact_course [--scene NAME] [--iso MM] [--ticks N] [--loops N] [--resolution 150]
 //                  [--contact ray] [--seed 1]
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "app/studies/contact/course.h"
+#include "app/studies/contact/contact_trials.h"
 #include "core/percentiles.h"
 #include "support/judged_scenes.h"
 
@@ -49,18 +49,18 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-void printRow(const std::string& name, double iso, const CourseReport& r, double created) {
+void printRow(const std::string& name, double iso, const TrialReport& r, double generated_energy) {
   const Percentiles e = percentiles(r.error), f = percentiles(r.free_error),
-                    ran = percentiles(r.snap_error), ns = percentiles(r.ns);
+                    ran = percentiles(r.relocation_error), ns = percentiles(r.ns);
   const double samples = std::accumulate(r.samples.begin(), r.samples.end(), 0.0) /
                          std::max<double>(1, static_cast<double>(r.samples.size()));
-  std::printf("%-9s %3.1f %8ld %7ld %7ld %6ld %7.2f %7ld %5.1f%% %5.3f %5.3f %5.3f | %5.3f %5.3f "
-              "%5.3f | %5.3f %5.3f %5.3f %7.4f %5.2f %5.0f %5.0f %6.0f %ld\n",
-              name.c_str(), 1e3 * iso, r.contacts, r.lost, r.pulls, r.faults, r.worst_excess,
-              r.excesses,
-              100.0 * static_cast<double>(r.snaps) / static_cast<double>(std::max(1L, r.contacts)),
-              e.p50, e.p99, e.p999, ran.p50, ran.p99, ran.p999, f.p50, f.p99, f.p999, 1e3 * created,
-              samples, ns.p50, ns.p99, ns.p999, r.unjudged);
+  std::printf(
+      "%-9s %3.1f %8ld %7ld %7ld %6ld %7.2f %7ld %5.1f%% %5.3f %5.3f %5.3f | %5.3f %5.3f "
+      "%5.3f | %5.3f %5.3f %5.3f %7.4f %5.2f %5.0f %5.0f %6.0f %ld\n",
+      name.c_str(), 1e3 * iso, r.contacts, r.lost, r.pulls, r.faults, r.worst_excess, r.excesses,
+      100.0 * static_cast<double>(r.relocations) / static_cast<double>(std::max(1L, r.contacts)),
+      e.p50, e.p99, e.p999, ran.p50, ran.p99, ran.p999, f.p50, f.p99, f.p999,
+      1e3 * generated_energy, samples, ns.p50, ns.p99, ns.p999, r.unverified);
   std::fflush(stdout);
 }
 
@@ -69,8 +69,8 @@ void run(const Options& options) {
               "scene", "iso", "contacts", "lost", "pulls", "faults", "step N", "steps", "snap",
               "error p50/99/99.9", "of snaps", "free running", "mJ loop", "reads",
               "ns p50/99/99.9");
-  CourseReport total;
-  double created = 0;
+  TrialReport total;
+  double generated_energy = 0;
   bool known = options.scene.empty();
   for (const ContactScene& scene : judgedScenes()) {
     if (!options.scene.empty() && options.scene != scene.name) continue;
@@ -78,19 +78,19 @@ void run(const Options& options) {
     const ExactSurface surface(scene.meshes);
     for (const double iso : scene.isos) {
       if (options.iso >= 0 && std::abs(iso - options.iso) > 1e-9) continue;
-      const unsigned seed = courseSeed(scene, iso, options.seed);
+      const unsigned seed = trialSeed(scene, iso, options.seed);
       const auto snapshot =
           contactSnapshot(contactField(scene, iso, options.resolution), iso, options.contact);
-      const CourseReport report = runCourse(methodOf(*snapshot), surface, iso, options.ticks, seed);
+      const TrialReport report = runTrials(methodOf(*snapshot), surface, iso, options.ticks, seed);
       const LoopReport loops =
           runLoops(methodOf(*snapshot), surface, iso, options.loops, seed + 1000);
-      printRow(scene.name, iso, report, loops.created);
+      printRow(scene.name, iso, report, loops.generated_energy);
       total.add(report);
-      created = std::max(created, loops.created);
+      generated_energy = std::max(generated_energy, loops.generated_energy);
     }
   }
   if (!known) contactScene(options.scene); // throws, naming those there are
-  printRow("total", 0, total, created);
+  printRow("total", 0, total, generated_energy);
 }
 
 } // namespace

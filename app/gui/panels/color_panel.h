@@ -1,0 +1,53 @@
+// Range, colour map, opacity and numbers of one of the drawn things.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QGroupBox>
+#include <QSpinBox>
+
+#include "app/gui/toolkit/value_row.h"
+#include "scene/color_scale.h"
+
+namespace patina {
+
+class ColorPanel : public QGroupBox {
+  Q_OBJECT
+ public:
+  explicit ColorPanel(QWidget* parent = nullptr);
+
+  // Names of the drawn things that have a scale; a new one is selected.
+  void setThings(const std::vector<std::string>& things);
+  void setScales(const ColorScales& scales);             // Sends no signal.
+  const std::string& thing() const { return thing_; }    // The selected one; empty: none.
+  void setRange(const std::optional<ValueRange>& range); // Range in the picture, not while typed.
+
+ signals:
+  void edited(const std::string& thing, const patina::ColorScale& scale);
+
+ private:
+  void select(int index);
+  void showScale();
+  void change(const std::function<void(ColorScale&)>& set);
+  void setNumbers(const ValueRange& range);
+
+  std::vector<std::string> things_;
+  std::string thing_;
+  ColorScales scales_;
+  double per_si_ = 1;
+  QComboBox *thing_box_, *map_, *range_;
+  QCheckBox *reversed_, *log_, *symmetric_;
+  QSpinBox *bands_, *digits_;
+  QDoubleSpinBox *low_, *high_, *percentile_;
+  ValueRow* opacity_;
+  QWidget *map_card_, *numbers_;
+};
+
+} // namespace patina

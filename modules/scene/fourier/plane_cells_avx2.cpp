@@ -1,6 +1,0 @@
-// The look for processors with AVX2 and FMA; compiled with those flags, entered only after asking
-// the processor.
-#if defined(__AVX2__) && defined(__FMA__)
-#define PATINA_KERNEL cells_avx2
-#include "scene/fourier/plane_cells_kernel.h"
-#endif

@@ -1,0 +1,284 @@
+#include "visualization/files/volume_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include <vtkCommand.h>
+#include <vtkXMLImageDataReader.h>
+
+#include "core/error.h"
+#include "core/numbers.h"
+#include "visualization/files/quiet_log.h"
+#include "visualization/files/xml_tags.h"
+
+namespace patina {
+namespace {
+
+// Collects VTK's messages. The first line is the cause; the others concern the calling filters.
+class ErrorCatcher : public vtkCommand {
+ public:
+  static ErrorCatcher* New() { return new ErrorCatcher; }
+  void Execute(vtkObject*, unsigned long, void* data) override {
+    if (!cause.empty() || data == nullptr) return;
+    cause = static_cast<const char*>(data);
+    // Format: "ERROR: In file, line n\nvtkClass (0x..): cause\n"
+    if (const auto colon = cause.find("): "); colon != std::string::npos)
+      cause = cause.substr(colon + 3);
+    if (const auto end = cause.find('\n'); end != std::string::npos) cause.resize(end);
+  }
+  std::string cause = {};
+};
+
+void checkKind(const std::filesystem::path& path) {
+  std::error_code code;
+  if (!std::filesystem::exists(path, code)) throw FileError(path.string(), 0, "no such file");
+  if (std::filesystem::is_directory(path, code))
+    throw FileError(path.string(), 0, "is a folder, not a .vti volume");
+  if (!std::filesystem::is_regular_file(path, code))
+    throw FileError(path.string(), 0, "is no file: a volume is not read from a pipe or device");
+  std::ifstream stream(path, std::ios::binary);
+  std::string head(8192, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  if (head.empty()) throw FileError(path.string(), 0, "is empty or cannot be read");
+  if (head.find("<VTKFile") == std::string::npos || head.find("\"ImageData\"") == std::string::npos)
+    throw FileError(path.string(), 0, "is not a VTK XML ImageData (.vti) file");
+}
+
+// Checks three numbers of the header, because VTK uses defaults for invalid ones. They may be
+// absent.
+void checkThree(std::string_view tag, const std::string& name, bool positive,
+                const std::filesystem::path& path) {
+  const std::string_view text = attributeOf(tag, name);
+  if (text.data() == nullptr) return;
+  std::istringstream words{std::string(text)};
+  std::size_t count = 0;
+  for (std::string word; words >> word; ++count)
+    if (const auto number = parseNumber(word);
+        !number || !std::isfinite(*number) || (positive && !(*number > 0)))
+      throw FileError(path.string(), 0,
+                      "has '" + word + "' in its " + name + ", which is no " +
+                          (positive ? "positive " : "") + "number");
+  if (count != 3)
+    throw FileError(path.string(), 0,
+                    "has " + std::to_string(count) + " numbers in its " + name + ", not three");
+}
+
+double nodesIn(std::string_view extent, const std::filesystem::path& path) {
+  if (extent.empty()) throw FileError(path.string(), 0, "has no WholeExtent");
+  std::istringstream numbers{std::string(extent)};
+  double nodes = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = 0, high = 0;
+    if (!(numbers >> low >> high) || high < low)
+      throw FileError(path.string(), 0, "has a WholeExtent that is not six ascending numbers");
+    nodes *= high - low + 1;
+  }
+  if (nodes > 1073741824.0)
+    throw FileError(path.string(), 0, "has more than 2^30 nodes: resample it to a smaller grid");
+  return nodes;
+}
+
+// Bytes that one byte of the file can stand for.
+double mostExpansion(std::string_view compressor) {
+  if (compressor.empty()) return 8; // text: two characters may be a number of eight bytes
+  if (compressor == "vtkZLibDataCompressor") return 1100;
+  return compressor == "vtkLZ4DataCompressor" ? 300 : 8000;
+}
+
+// Bytes of one value; throws for a type that VTK would not know and would read all the same.
+double bytesOfType(std::string_view type, const std::filesystem::path& path) {
+  constexpr std::pair<std::string_view, double> kTypes[] = {
+      {"Int8", 1},  {"UInt8", 1},  {"Int16", 2},   {"UInt16", 2},  {"Int32", 4},  {"UInt32", 4},
+      {"Int64", 8}, {"UInt64", 8}, {"Float32", 4}, {"Float64", 8}, {"String", 8}, {"Bit", 1}};
+  for (const auto& [name, bytes] : kTypes)
+    if (name == type) return bytes;
+  throw FileError(path.string(), 0,
+                  "cannot be read: truncated or damaged: an array of no known type");
+}
+
+// The numbers that compressed data begin with.
+struct Blocks {
+  std::uint64_t count = 0, size = 0; // size: bytes of each when it is unpacked
+};
+
+// Reads them, raw or in base64; `width`: bytes of a number.
+Blocks blocksAt(const std::filesystem::path& path, std::uint64_t position, bool raw,
+                std::size_t width, bool big_endian) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text(64, '\0');
+  file.seekg(static_cast<std::streamoff>(position));
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  std::string bytes;
+  if (raw) {
+    bytes = text;
+  } else {
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()))) {
+      bits = bits << 6 | static_cast<std::uint32_t>(std::min<std::size_t>(kDigits.find(c), 63));
+      count += 6;
+      if (count < 8) continue;
+      count -= 8;
+      bytes += static_cast<char>(bits >> count & 0xff);
+    }
+  }
+  bytes.resize(2 * width);
+  Blocks blocks;
+  for (std::uint64_t* number : {&blocks.count, &blocks.size}) {
+    std::string own = bytes.substr(number == &blocks.count ? 0 : width, width);
+    if (big_endian) std::reverse(own.begin(), own.end());
+    std::memcpy(number, own.data(), width);
+  }
+  return blocks;
+}
+
+// Throws if compressed data claim more blocks than the file has bytes, since the reader keeps a
+// list of them, or blocks of no size, by which it divides.
+class BlockCheck {
+ public:
+  explicit BlockCheck(const std::filesystem::path& path)
+      : path_(path), size_(std::filesystem::file_size(path)) {}
+
+  void take(std::string_view tag, std::uint64_t after) {
+    if (tag.starts_with("VTKFile")) {
+      compressed_ = !attributeOf(tag, "compressor").empty();
+      wide_ = attributeOf(tag, "header_type") == "UInt64";
+      big_endian_ = attributeOf(tag, "byte_order") == "BigEndian";
+    } else if (tag.starts_with("AppendedData")) {
+      const std::uint64_t start = startOfAppended(after);
+      for (const std::uint64_t offset : offsets_)
+        check(start + offset, attributeOf(tag, "encoding") == "raw");
+    } else if (tag.starts_with("DataArray") || tag.starts_with("Array")) {
+      if (attributeOf(tag, "format") == "binary") check(after, false);
+      if (attributeOf(tag, "format") != "appended") return;
+      const double offset = parseNumber(attributeOf(tag, "offset")).value_or(-1);
+      if (offset >= 0 && offset < static_cast<double>(size_))
+        offsets_.push_back(static_cast<std::uint64_t>(offset));
+    }
+  }
+
+ private:
+  std::uint64_t startOfAppended(std::uint64_t after) { // behind an underscore
+    std::ifstream file(path_, std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(after));
+    char c = 0;
+    for (; after < size_ && c != '_' && file.get(c); ++after) {
+    }
+    return after;
+  }
+  void check(std::uint64_t position, bool raw) {
+    if (!compressed_) return;
+    const Blocks blocks = blocksAt(path_, position, raw, wide_ ? 8 : 4, big_endian_);
+    if (blocks.count > size_ || (blocks.count > 0 && blocks.size == 0))
+      throw FileError(path_.string(), 0, "cannot be read: truncated or damaged: an array's blocks");
+  }
+
+  const std::filesystem::path& path_;
+  std::uint64_t size_;
+  bool compressed_ = false, wide_ = false, big_endian_ = false;
+  std::vector<std::uint64_t> offsets_; // offsets of arrays in the appended data
+};
+
+// Checks the header first, because the reader calls itself for nested elements and allocates what
+// the header requests.
+void checkHeader(const std::filesystem::path& path) {
+  checkKind(path);
+  double nodes = 0, expansion = 8, field_bytes = 0, piece_bytes = 0, most_bytes = 0;
+  bool in_piece = false, in_field = false;
+  BlockCheck blocks(path);
+  forEachTag(path, [&](std::string_view tag, std::uint64_t after) {
+    blocks.take(tag, after);
+    if (tag.starts_with("FieldData")) {
+      in_field = true;
+    } else if (tag.starts_with("PointData") || tag.starts_with("CellData")) {
+      in_field = false;
+    } else if (tag.starts_with("VTKFile")) {
+      expansion = mostExpansion(attributeOf(tag, "compressor"));
+    } else if (tag.starts_with("ImageData")) {
+      nodes = nodesIn(attributeOf(tag, "WholeExtent"), path);
+      checkThree(tag, "Spacing", true, path);
+      checkThree(tag, "Origin", false, path);
+    } else if (tag.starts_with("Piece")) {
+      in_piece = true;
+      in_field = false;
+      piece_bytes = 0;
+    } else if (tag.starts_with("DataArray") || tag.starts_with("Array")) {
+      const double components = parseNumber(attributeOf(tag, "NumberOfComponents")).value_or(1);
+      const double tuples = parseNumber(attributeOf(tag, "NumberOfTuples")).value_or(0);
+      const double bytes = (in_piece ? nodes : std::abs(tuples)) *
+                           std::max(std::abs(components), 1.) *
+                           bytesOfType(attributeOf(tag, "type"), path);
+      (in_piece ? piece_bytes : field_bytes) += bytes;
+      most_bytes = std::max(most_bytes, field_bytes + piece_bytes);
+    } else if (in_field && !tag.starts_with("InformationKey") && !tag.starts_with("Value")) {
+      throw FileError(path.string(), 0,
+                      "cannot be read: truncated or damaged: its FieldData hold no array");
+    }
+  });
+  if (nodes == 0) throw FileError(path.string(), 0, "has no WholeExtent");
+  constexpr double kSlack = 65536;
+  const auto size = static_cast<double>(std::filesystem::file_size(path));
+  if (!(most_bytes <= expansion * size + kSlack))
+    throw FileError(path.string(), 0,
+                    "cannot be read: truncated or damaged: " + formatNumber(size) +
+                        " bytes cannot hold the " + formatNumber(most_bytes) +
+                        " bytes of its arrays");
+}
+
+// Runs `read` and turns the reader's messages into errors of the file.
+template <typename Read>
+void readQuietly(vtkXMLImageDataReader* reader, const std::filesystem::path& path,
+                 const Read& read) {
+  const QuietLog quiet;
+  const vtkNew<ErrorCatcher> errors;
+  reader->AddObserver(vtkCommand::ErrorEvent, errors);
+  reader->AddObserver(vtkCommand::WarningEvent, errors);
+  reader->SetFileName(path.c_str());
+  try {
+    // The reader creates the XML parser itself; parser errors reach the reader's error code.
+    reader->SetReaderErrorObserver(errors);
+    reader->SetParserErrorObserver(errors);
+    read();
+  } catch (const std::exception&) {
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged");
+  }
+  if (!errors->cause.empty() || reader->GetErrorCode() != 0)
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged");
+}
+
+} // namespace
+
+vtkSmartPointer<vtkImageData> readVolume(const std::filesystem::path& path) {
+  checkHeader(path);
+  const vtkNew<vtkXMLImageDataReader> reader;
+  readQuietly(reader, path, [&] { reader->Update(); });
+  vtkSmartPointer<vtkImageData> image = reader->GetOutput();
+  if (image == nullptr || image->GetNumberOfPoints() == 0)
+    throw FileError(path.string(), 0, "cannot be read: truncated or damaged, or without nodes");
+  return image;
+}
+
+void requireVolumeFile(const std::filesystem::path& path) {
+  checkKind(path);
+}
+
+std::vector<std::string> pointArraysOf(const std::filesystem::path& path) {
+  checkHeader(path);
+  const vtkNew<vtkXMLImageDataReader> reader;
+  readQuietly(reader, path, [&] { reader->UpdateInformation(); });
+  std::vector<std::string> names;
+  for (int i = 0; i < reader->GetNumberOfPointArrays(); ++i)
+    names.emplace_back(reader->GetPointArrayName(i));
+  return names;
+}
+
+} // namespace patina

@@ -1,0 +1,23 @@
+// Position of a slice.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/types.h"
+
+namespace patina {
+
+// The plane of the points whose component along `normal` is `position`.
+struct SlicePosition {
+  Vec3 normal = Vec3::UnitY();      // unit, world
+  std::optional<double> position{}; // [m]; nullopt: through the middle of the field
+  bool operator==(const SlicePosition&) const = default;
+};
+
+// Parses a direction, "x", "-z" or "0,1,1", and then a position, "0,1,1:12.5mm". Throws Error.
+SlicePosition parseSlice(std::string_view text);
+std::string directionText(const Vec3& normal); // "y" or "0, 0.7071, 0.7071"
+
+} // namespace patina

@@ -1,0 +1,103 @@
+#include "visualization/view/video.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+#include <vtkOggTheoraWriter.h>
+
+#include "core/error.h"
+#include "visualization/view/figure_stage.h"
+
+namespace patina {
+
+Figure withEvenSides(Figure figure) {
+  figure.width += figure.width % 2;
+  figure.height += figure.height % 2;
+  return figure;
+}
+
+struct VideoWriter::Impl {
+  SceneView& view;
+  std::vector<ToolSample> samples;
+  std::filesystem::path path, partial; // the same folder
+  FigureStage stage;
+  vtkNew<vtkOggTheoraWriter> writer;
+  int frames = 0, written = 0;
+  std::size_t next = 0; // first sample after those shown
+
+  Impl(SceneView& drawn, std::vector<ToolSample> shown, const Figure& figure,
+       std::filesystem::path file)
+      : view(drawn), samples(std::move(shown)), path(std::move(file)), partial(path),
+        stage(drawn, figure) {
+    partial.replace_filename("." + path.stem().string() + "-" + std::to_string(getpid()) + ".ogv");
+    const double seconds = samples.back().t - samples.front().t;
+    frames = 1 + static_cast<int>(std::floor(seconds * kVideoFrameRate));
+  }
+  ~Impl() {
+    if (written < frames) writer->End();
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  [[noreturn]] void fail() const {
+    throw FileError(path.string(), 0, "cannot be written as a video: no space or no permission");
+  }
+  void add(vtkImageData* image) {
+    writer->SetInputData(image);
+    if (written == 0) {
+      writer->SetFileName(partial.c_str());
+      writer->SetRate(kVideoFrameRate);
+      writer->SetQuality(2);
+      writer->Start();
+    }
+    writer->Write();
+    if (writer->GetError() != 0) fail();
+  }
+};
+
+VideoWriter::VideoWriter(SceneView& view, std::vector<ToolSample> samples, Figure figure,
+                         const std::filesystem::path& path) {
+  if (path.extension() != ".ogv")
+    throw Error("a video is an .ogv file, not '" + path.string() + "'");
+  if (samples.empty()) throw Error("the recording has no sample: nothing to replay");
+  my_ = std::make_unique<Impl>(view, std::move(samples), withEvenSides(std::move(figure)), path);
+}
+
+VideoWriter::~VideoWriter() = default;
+
+int VideoWriter::frames() const {
+  return my_->frames;
+}
+
+int VideoWriter::written() const {
+  return my_->written;
+}
+
+bool VideoWriter::writeNext() {
+  if (my_->written == my_->frames) return false;
+  const double time =
+      my_->samples.front().t + static_cast<double>(my_->written) / kVideoFrameRate + 1e-9;
+  while (my_->next < my_->samples.size() && my_->samples[my_->next].t <= time) ++my_->next;
+  my_->view.setTool(my_->samples[std::max<std::size_t>(1, my_->next) - 1]);
+  my_->view.prepare();
+  my_->add(my_->stage.draw());
+  if (++my_->written < my_->frames) return true;
+  my_->writer->End();
+  std::error_code failed;
+  // The writer does not notice a full disk.
+  constexpr std::uintmax_t kLeastRoom = 1 << 16; // [bytes]
+  const auto room = std::filesystem::space(std::filesystem::absolute(my_->partial), failed);
+  if (!failed && room.available < kLeastRoom) my_->fail();
+  std::filesystem::rename(my_->partial, my_->path, failed);
+  if (failed || my_->writer->GetError() != 0) my_->fail();
+  return false;
+}
+
+} // namespace patina

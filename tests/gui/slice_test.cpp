@@ -1,0 +1,136 @@
+// The slice at any place, and what is read from it, by real events.
+#include <cmath>
+
+#include "app/gui/toolkit/plot.h"
+#include "core/csv.h"
+#include "geometry/mesh/shapes.h"
+#include "gui/driven_window.h"
+#include "gui/misfits.h"
+#include "visualization/values/camera.h"
+
+namespace patina {
+namespace {
+
+constexpr double kBallRadius = 0.03;
+
+class SliceWindowTest : public DrivenWindow {
+ protected:
+  void SetUp() override {
+    DrivenWindow::SetUp();
+    if (IsSkipped()) return;
+    ASSERT_TRUE(open(saved(icosphere(kBallRadius, 24), "ball.obj")));
+    show(Layer::tip, false);
+    clickAction("desk_analyse");
+    if (!find<QToolButton>("slice_handle")->isVisible()) clickOn("slice");
+    wait(200);
+  }
+  ClipPlane plane() { return view().view().slicePlane().value(); }
+  void typeOver(QWidget& field, const QString& text) {
+    click(field);
+    type('a', kControl);
+    type(text);
+    type(kEnter);
+    wait(100);
+  }
+  QPoint screenOf(const Vec3& point) {
+    double x = point.x(), y = point.y(), z = point.z();
+    view().view().renderer().WorldToView(x, y, z);
+    return view().mapToGlobal(
+        QPoint(qRound((x + 1) / 2 * view().width()), qRound((1 - y) / 2 * view().height())));
+  }
+  void keepScreen(const QString& name) {
+    if (const char* folder = std::getenv("PATINA_PICTURES"))
+      window_->screen()->grabWindow(0).save(QString::fromUtf8(folder) + '/' + name + ".png");
+  }
+  // Saves the table of a plot's window: one click and a name.
+  CsvTable savedTable(const char* name, const std::vector<std::string>& columns) {
+    auto* window = find<QWidget>(name);
+    EXPECT_TRUE(window != nullptr && window->isVisible()) << name;
+    if (window == nullptr) return {};
+    wait(300);
+    const auto path = folder_ / (std::string(name) + ".csv");
+    answerWithPath(path);
+    click(*window->findChild<QPushButton*>("save_table"));
+    EXPECT_TRUE(waitUntil([&] { return std::filesystem::exists(path); }, 5000));
+    return readCsv(path, columns);
+  }
+};
+
+TEST_F(SliceWindowTest, StandsAt12MillimetresAndAHalfAtAnAngleByNumbers) {
+  if (IsSkipped()) return;
+  typeOver(*find<QLineEdit>("slice_direction"), QStringLiteral("0,1,1"));
+  typeOver(*find<ValueRow>("slice_position")->findChild<QDoubleSpinBox*>(), QStringLiteral("12.5"));
+  const Vec3 normal = Vec3(0, 1, 1).normalized();
+  EXPECT_NEAR((plane().normal - normal).norm(), 0, 1e-9);
+  EXPECT_NEAR(plane().origin.dot(normal), 0.0125, 1e-9);
+  wait(300);
+  keepScreen("slice_angle");
+  EXPECT_TRUE(test::misfits(*find<DisplayPanel>()).isEmpty());
+  typeOver(*find<QLineEdit>("slice_direction"), QStringLiteral("nonsense"));
+  EXPECT_NEAR((plane().normal - normal).norm(), 0, 1e-9);
+  EXPECT_EQ(find<QLineEdit>("slice_direction")->text(), QStringLiteral("0, 0.7071, 0.7071"));
+  clickOn("slice_x");
+  EXPECT_EQ(plane().normal, Vec3::UnitX());
+  EXPECT_NEAR(plane().origin.x(), 0, 1e-3) << "in the middle";
+}
+
+TEST_F(SliceWindowTest, IsMovedByItsHandle) {
+  if (IsSkipped()) return;
+  clickOn("slice_handle");
+  pointAt(inView({0, 200}));
+  wait(200);
+  keepScreen("slice_handle");
+  const ClipPlane before = plane();
+  drag(screenOf(before.origin), screenOf(before.origin + 0.01 * before.normal));
+  EXPECT_NEAR(plane().origin.dot(before.normal) - before.origin.dot(before.normal), 0.01, 0.002);
+  EXPECT_NEAR(find<ValueRow>("slice_position")->value(), 1000 * plane().origin.dot(before.normal),
+              0.01);
+  const ClipPlane shifted = plane();
+  const double length = view().view().handleLength(true);
+  drag(screenOf(shifted.origin + length * shifted.normal),
+       screenOf(shifted.origin + length * Vec3::UnitX()));
+  EXPECT_GT((plane().normal - shifted.normal).norm(), 0.3) << "tilted by the head";
+}
+
+TEST_F(SliceWindowTest, GivesTheProfileAlongALineThatIsDragged) {
+  if (IsSkipped()) return;
+  clickOn("line_profile");
+  drag(screenOf(plane().origin + Vec3(0.022, 0, 0)),
+       screenOf(plane().origin + Vec3(0.036, 0, 0.01)));
+  wait(300);
+  keepScreen("line_profile");
+  const CsvTable table =
+      savedTable("line_profile_window", {"s [m]", "x [m]", "y [m]", "z [m]", "phi [m]"});
+  ASSERT_GT(table.rows.size(), 100U);
+  EXPECT_NEAR(table.rows.back()[0], std::hypot(0.014, 0.01), 5e-4);
+  std::size_t known = 0;
+  for (const auto& row : table.rows) {
+    EXPECT_NEAR(row[2], plane().origin.y(), 1e-9) << "on the slice";
+    if (!std::isfinite(row[4])) continue;
+    ++known;
+    EXPECT_NEAR(row[4], Vec3(row[1], row[2], row[3]).norm() - kBallRadius, 1e-4);
+  }
+  EXPECT_GT(known, 100U);
+}
+
+TEST_F(SliceWindowTest, GivesTheHistogramOfItsDistances) {
+  if (IsSkipped()) return;
+  clickOn("slice_histogram");
+  wait(300);
+  keepScreen("histogram");
+  const CsvTable table =
+      savedTable("histogram_window", {"phi from [m]", "phi to [m]", "area [m^2]"});
+  ASSERT_EQ(table.rows.size(), 50U);
+  const Vec3 to_plane = plane().origin.y() * Vec3::UnitY();
+  const double radius = std::sqrt(kBallRadius * kBallRadius - to_plane.squaredNorm());
+  // Rings of equal width about the circle: area 2 pi r dr, within a few points of the raster.
+  for (const auto& row : table.rows) {
+    const double ring =
+        M_PI * ((radius + row[1]) * (radius + row[1]) - (radius + row[0]) * (radius + row[0]));
+    if (std::abs(row[0]) > 0.002) continue; // The band is complete near the surface.
+    EXPECT_NEAR(row[2], ring, 0.15 * ring) << row[0];
+  }
+}
+
+} // namespace
+} // namespace patina
