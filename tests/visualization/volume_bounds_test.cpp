@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <vtkBase64Utilities.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -162,16 +163,40 @@ TEST_F(VolumeBounds, BlocksThatCannotBeAreRefused) {
                          ? whole.find('>', whole.find("format=\"binary\"")) + 1
                          : whole.find('_', whole.find("<AppendedData")) + 1;
     at = whole.find_first_not_of(" \n", at);
-    // The first numbers are how many blocks there are, and their size.
-    const bool raw = encoding == Encoding::raw;
-    for (const std::string& numbers :
-         {raw ? std::string(8, '\xff') : std::string("//////////8"),
-          raw ? std::string("\1\0\0\0\0\0\0\0", 8) : std::string("AQAAAAAAAAA")}) {
+    // The first numbers are the blocks, the bytes of each, and those of a shorter last one.
+    using Numbers = std::array<std::uint32_t, 3>;
+    for (const Numbers& numbers :
+         {Numbers{~0U, ~0U, 0}, Numbers{1, 0, 0}, Numbers{0, 0, 32}, Numbers{0, 32, 16}}) {
+      std::string head(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+      if (encoding != Encoding::raw) {
+        std::string digits(16, '\0');
+        vtkBase64Utilities::Encode(reinterpret_cast<const unsigned char*>(head.data()), head.size(),
+                                   reinterpret_cast<unsigned char*>(digits.data()));
+        head = digits;
+      }
       std::string bytes = whole;
-      bytes.replace(at, raw ? 8 : 10, numbers.substr(0, raw ? 8 : 10));
+      bytes.replace(at, head.size(), head);
       EXPECT_NE(refusal(bytes).find("an array's blocks"), std::string::npos);
     }
   }
+}
+
+// VTK follows an offset whatever the format is, and finds the appended data in a comment, too.
+TEST_F(VolumeBounds, BlocksThatCannotBeAreFoundWhereTheReaderFindsThem) {
+  const fs::path path = write("");
+  writeZeros(path, 8, Encoding::raw);
+  const std::string whole = readFile(path);
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string bytes = whole;
+    bytes.replace(whole.find('_', whole.find("<AppendedData")) + 1, 8, std::string(8, '\0'));
+    return bytes.replace(bytes.find(from), from.size(), to);
+  };
+  for (const auto& bytes :
+       {changed("format=\"appended\"", "format=\"binary\""),
+        changed("offset=\"0\"", "offset=\"0x\""),
+        changed("<ImageData ", "<!-- <AppendedData>_ --><ImageData "),
+        changed("<Piece ", "<Piece a=\">\" "), changed("<ImageData ", "<VTKFile/><ImageData ")})
+    EXPECT_NE(refusal(bytes).find("truncated or damaged: "), std::string::npos);
 }
 
 TEST_F(VolumeBounds, ConstantVolumeIsReadHoweverSmallItsFile) {

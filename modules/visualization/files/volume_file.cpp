@@ -104,7 +104,9 @@ double bytesOfType(std::string_view type, const std::filesystem::path& path) {
 
 // The numbers that compressed data begin with.
 struct Blocks {
-  std::uint64_t count = 0, size = 0; // size: bytes of each when it is unpacked
+  std::uint64_t count = 0;
+  std::uint64_t size = 0; // bytes of each when it is unpacked
+  std::uint64_t last = 0; // bytes of the last one if it is shorter, otherwise 0
 };
 
 // Reads them, raw or in base64; `width`: bytes of a number.
@@ -131,10 +133,12 @@ Blocks blocksAt(const std::filesystem::path& path, std::uint64_t position, bool 
       bytes += static_cast<char>(bits >> count & 0xff);
     }
   }
-  bytes.resize(2 * width);
+  bytes.resize(3 * width);
   Blocks blocks;
-  for (std::uint64_t* number : {&blocks.count, &blocks.size}) {
-    std::string own = bytes.substr(number == &blocks.count ? 0 : width, width);
+  std::size_t at = 0;
+  for (std::uint64_t* number : {&blocks.count, &blocks.size, &blocks.last}) {
+    std::string own = bytes.substr(at, width);
+    at += width;
     if (big_endian) std::reverse(own.begin(), own.end());
     std::memcpy(number, own.data(), width);
   }
@@ -142,7 +146,8 @@ Blocks blocksAt(const std::filesystem::path& path, std::uint64_t position, bool 
 }
 
 // Throws if compressed data claim more blocks than the file has bytes, since the reader keeps a
-// list of them, or blocks of no size, by which it divides.
+// list of them, blocks of no size, by which it divides, or a last block where there is none. The
+// data are found where the reader finds them: an offset wins over the format.
 class BlockCheck {
  public:
   explicit BlockCheck(const std::filesystem::path& path)
@@ -150,7 +155,8 @@ class BlockCheck {
 
   void take(std::string_view tag, std::uint64_t after) {
     if (tag.starts_with("VTKFile")) {
-      compressed_ = !attributeOf(tag, "compressor").empty();
+      if (std::exchange(begun_, true)) fail("it has two roots");
+      compressed_ = attributeOf(tag, "compressor").data() != nullptr;
       wide_ = attributeOf(tag, "header_type") == "UInt64";
       big_endian_ = attributeOf(tag, "byte_order") == "BigEndian";
     } else if (tag.starts_with("AppendedData")) {
@@ -158,11 +164,15 @@ class BlockCheck {
       for (const std::uint64_t offset : offsets_)
         check(start + offset, attributeOf(tag, "encoding") == "raw");
     } else if (tag.starts_with("DataArray") || tag.starts_with("Array")) {
-      if (attributeOf(tag, "format") == "binary") check(after, false);
-      if (attributeOf(tag, "format") != "appended") return;
-      const double offset = parseNumber(attributeOf(tag, "offset")).value_or(-1);
-      if (offset >= 0 && offset < static_cast<double>(size_))
-        offsets_.push_back(static_cast<std::uint64_t>(offset));
+      const std::string_view text = attributeOf(tag, "offset");
+      if (text.data() == nullptr) {
+        if (attributeOf(tag, "format") == "binary") check(after, false);
+        return;
+      }
+      const double offset = parseNumber(text).value_or(-1);
+      if (!(offset >= 0 && offset < static_cast<double>(size_)) || offset != std::floor(offset))
+        fail("an array's offset");
+      offsets_.push_back(static_cast<std::uint64_t>(offset));
     }
   }
 
@@ -178,13 +188,17 @@ class BlockCheck {
   void check(std::uint64_t position, bool raw) {
     if (!compressed_) return;
     const Blocks blocks = blocksAt(path_, position, raw, wide_ ? 8 : 4, big_endian_);
-    if (blocks.count > size_ || (blocks.count > 0 && blocks.size == 0))
-      throw FileError(path_.string(), 0, "cannot be read: truncated or damaged: an array's blocks");
+    if (blocks.count > size_ || (blocks.count > 0 && blocks.size == 0) ||
+        (blocks.count == 0 && blocks.last > 0))
+      fail("an array's blocks");
+  }
+  [[noreturn]] void fail(const std::string& cause) const {
+    throw FileError(path_.string(), 0, "cannot be read: truncated or damaged: " + cause);
   }
 
   const std::filesystem::path& path_;
   std::uint64_t size_;
-  bool compressed_ = false, wide_ = false, big_endian_ = false;
+  bool begun_ = false, compressed_ = false, wide_ = false, big_endian_ = false;
   std::vector<std::uint64_t> offsets_; // offsets of arrays in the appended data
 };
 

@@ -70,7 +70,17 @@ class TagScan {
     in_markup_ = false;
   }
 
+  // A reader that searches bytes instead of tags would take either for the end of a tag or for the
+  // appended data.
+  void refuseHiddenMarkup() const {
+    const bool is_text = markup_.starts_with("!--") || markup_.starts_with('?');
+    if (markup_.find("<AppendedData") != markup_.npos ||
+        (!is_text && markup_.find('>') != markup_.npos))
+      fail("a tag stands in a comment or an attribute");
+  }
+
   void finishMarkup() {
+    refuseHiddenMarkup();
     if (markup_.starts_with("!--") || markup_.starts_with('?')) return;
     if (markup_.starts_with('!')) fail("it has a document type or raw text, which no .vti has");
     if (markup_.size() > kLongestTag) fail("a tag is longer than 8 kB");
