@@ -58,13 +58,13 @@ bool FramePacer::refresh() {
   const bool stands_still = now - drawn_ > std::chrono::milliseconds(150);
   if (!changed && (smooth_ || !stands_still)) return false;
   smooth_ = !plain && (!changed || frame_seconds_ < (smooth_ ? 0.040 : 0.020));
-  view_.renderer().SetUseFXAA(smooth_);
+  view_.setSmooth(smooth_);
   widget_.renderWindow()->Render();
   drawn_ = std::chrono::steady_clock::now();
   if (moves && changed) moved_ = drawn_; // Events that were delayed by the frame arrive now.
   // The anti-aliased frame at rest is no measure of moving frames.
   if (changed) frame_seconds_ = std::chrono::duration<double>(drawn_ - now).count();
-  if (changed && !plain) whole_seconds_ = frame_seconds_;
+  if (changed && !plain && !view_.keepsBodies()) whole_seconds_ = frame_seconds_;
   if (plain && !soon_.isActive()) soon_.start(kMotionTime); // A complete frame follows.
   return changed;
 }

@@ -87,7 +87,9 @@ class LoadingMode : public QObject {
   bool switched_ = false;        // Switched to Feel for the new scene.
 };
 
-constexpr int kNarrow = 1100; // Narrower windows have no room for the side panel [px].
+constexpr int kTick = 33, kDragTick = 16; // [ms]
+constexpr int kDragEnd = 200;             // Rest after which the tool is no longer dragged [ms].
+constexpr int kNarrow = 1100;             // Narrower windows have no room for the side panel [px].
 // Window managers report their frame only for visible windows.
 constexpr QSize kManagersFrame{12, 44};
 
@@ -145,7 +147,7 @@ MainWindow::MainWindow(QWidget* parent)
   // One timer drives all drawing; unchanged parts are not drawn again.
   timer_.setTimerType(Qt::PreciseTimer);
   connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
-  timer_.start(33);
+  timer_.start(kTick);
 }
 
 void MainWindow::connectFiles() {
@@ -220,6 +222,8 @@ void MainWindow::connectTools() {
   connect(&probe_, &ProbeController::underPointer, parts_.status, &StatusLine::showPicked);
   connect(parts_.view, &SceneWidget::tipMoved, &feel_,
           [this](const Vec3& target) { feel_.servo().setTarget(target); });
+  connect(parts_.view, &SceneWidget::tipMoved, this, &MainWindow::hurry);
+  connect(parts_.view, &SceneWidget::pointed, this, &MainWindow::hurry);
   connect(parts_.view, &SceneWidget::placeRequested, &feel_, [this](const Vec3& surface) {
     const Vec3 tip = tipAtContact(*edits_.scene(), surface);
     parts_.view->setTarget(tip);
@@ -274,7 +278,14 @@ void MainWindow::say(Message message) {
   if (!parts_.messages->isVisible()) parts_.notice->show(message);
 }
 
+// Other widgets and the servo get the processor while nothing is dragged.
+void MainWindow::hurry() {
+  dragged_.start();
+  if (timer_.interval() != kDragTick) timer_.setInterval(kDragTick);
+}
+
 void MainWindow::tick() {
+  if (timer_.interval() != kTick && dragged_.hasExpired(kDragEnd)) timer_.setInterval(kTick);
   edits_.previewValues();
   feel_.collect();
   // Qt delays a label's update until the next screen refresh, so the picture is drawn later.

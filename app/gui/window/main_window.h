@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include <QElapsedTimer>
 #include <QMainWindow>
 #include <QTimer>
 
@@ -90,6 +91,7 @@ class MainWindow : public QMainWindow {
   void connectTools();
   void connectScan(); // In connect_scan.cpp.
   void tick();
+  void hurry(); // Ticks as quickly as a camera motion is drawn, while the tool is dragged.
   void say(Message message);
   WindowState state() const;
   void refresh() { showState(state(), parts_, *this); }
@@ -112,6 +114,7 @@ class MainWindow : public QMainWindow {
   RecoveryOffer recovery_;
   DeskController desks_;
   QTimer timer_;
+  QElapsedTimer dragged_; // Since the last motion of a drag.
   bool stages_shown_ = true;
   double felt_ = 0; // Largest force on this surface [N].
   bool closing_ = false;

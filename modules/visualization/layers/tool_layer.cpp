@@ -105,13 +105,13 @@ Vec3 seenContact(const ToolSample& sample) {
   return sample.vcp - reach * sample.normal;
 }
 
-ToolLayer::ToolLayer(vtkRenderer& scene, vtkRenderer& overlay)
+ToolLayer::ToolLayer(vtkRenderer& front, vtkRenderer& overlay)
     : overlay_(overlay), ball_(unitBall(palette::kTool, 1)), neck_(unitCone(palette::kTool)),
       shaft_(unitRod(palette::kToolShaft)), ghost_(unitBall(palette::kGhost, 0.45)),
       spring_(unitRod(palette::kGhost)), stem_(unitRod(palette::kContactPoint)),
       contact_(unitBall(palette::kContactPoint, 1)), arrow_shaft_(unitRod(palette::kForce)),
       arrow_head_(unitCone(palette::kForce)), label_(vtkSmartPointer<vtkTextActor>::New()) {
-  for (const auto& actor : {ball_, neck_, shaft_}) scene.AddActor(actor);
+  for (const auto& actor : {ball_, neck_, shaft_}) front.AddActor(actor);
   for (const auto& actor : {spring_, stem_, ghost_, contact_, arrow_shaft_, arrow_head_})
     overlay.AddActor(actor);
   vtkTextProperty* text = label_->GetTextProperty();

@@ -20,8 +20,8 @@ Vec3 seenContact(const ToolSample& sample);
 
 class ToolLayer {
  public:
-  // scene: hidden by surfaces in front; overlay: never hidden.
-  ToolLayer(vtkRenderer& scene, vtkRenderer& overlay);
+  // front: hidden by surfaces before it; overlay: never hidden.
+  ToolLayer(vtkRenderer& front, vtkRenderer& overlay);
 
   // Tip radius [m]; 0 = a point, drawn as a ball of constant size in the picture.
   void setTipRadius(double radius);

@@ -53,6 +53,18 @@ void place(vtkActor& actor, const Pose& world_from_object) {
   actor.SetUserMatrix(matrix);
 }
 
+vtkSmartPointer<vtkActor> outlineActor(vtkOutlineSource& source) {
+  const vtkNew<vtkPolyDataMapper> mapper;
+  source.SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  mapper->SetInputConnection(source.GetOutputPort());
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(palette::forVtk(palette::kSecondary));
+  actor->GetProperty()->SetLineWidth(1.5);
+  actor->GetProperty()->LightingOff();
+  return actor;
+}
+
 void addLights(vtkRenderer& renderer) {
   struct Lamp {
     Vec3 from; // camera frame: right, up, towards the viewer

@@ -3,6 +3,7 @@
 
 #include <vtkActor.h>
 #include <vtkAxesActor.h>
+#include <vtkOutlineSource.h>
 #include <vtkPolyDataAlgorithm.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkRenderer.h>
@@ -25,6 +26,8 @@ vtkSmartPointer<vtkActor> surfaceActor(vtkPolyDataAlgorithm& source, const palet
 // Sets the pose of an actor whose data are in the object frame.
 void place(vtkActor& actor, const Pose& world_from_object);
 void addLights(vtkRenderer& renderer);
+// Lines along the edges of the source's box, without light.
+vtkSmartPointer<vtkActor> outlineActor(vtkOutlineSource& source);
 vtkSmartPointer<vtkAxesActor> axesActor();
 void setTextStyle(vtkAxesActor& axes, const TextStyle& letters);
 void setBackground(vtkRenderer& renderer, const palette::BackgroundStyle& ground);

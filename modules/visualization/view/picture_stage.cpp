@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <vtkBoundingBox.h>
 #include <vtkCameraPass.h>
 #include <vtkLightsPass.h>
 #include <vtkObjectFactory.h>
@@ -20,7 +21,8 @@
 namespace patina {
 namespace {
 
-constexpr unsigned kColorBit = 0x4000, kLinear = 0x2601, kScissorTest = 0x0C11;
+constexpr unsigned kColorBit = 0x4000, kDepthBit = 0x0100, kLinear = 0x2601, kNearest = 0x2600,
+                   kScissorTest = 0x0C11;
 
 class HalfSizePass : public vtkRenderPass {
  public:
@@ -36,7 +38,8 @@ class HalfSizePass : public vtkRenderPass {
     vtkOpenGLState* gl = window->GetState();
     gl->PushFramebufferBindings();
     half_->SetContext(window);
-    half_->PopulateFramebuffer(half_width, half_height);
+    half_->PopulateFramebuffer(half_width, half_height, true, 1, VTK_UNSIGNED_CHAR, true, 32, 0,
+                               window->GetStencilCapable() != 0);
     half_->StartNonOrtho(half_width, half_height);
     vtkRenderState bodies(renderer);
     bodies.SetPropArrayAndCount(state->GetPropArray(), state->GetPropArrayCount());
@@ -51,6 +54,7 @@ class HalfSizePass : public vtkRenderPass {
     gl->vtkglDisable(kScissorTest);
     const int from[] = {0, half_width, 0, half_height}, to[] = {x, x + width, y, y + height};
     vtkOpenGLFramebufferObject::Blit(from, to, kColorBit, kLinear);
+    vtkOpenGLFramebufferObject::Blit(from, to, kDepthBit, kNearest);
     gl->PopReadFramebufferBinding();
     gl->vtkglEnable(kScissorTest);
     gl->vtkglViewport(x, y, width, height);
@@ -89,18 +93,23 @@ PictureStage::PictureStage() : axes(axesActor()) {}
 void PictureStage::setUp() {
   setBackground(*scene, ground);
   addLights(*scene);
-  overlay->SetLayer(1);
+  foreground->SetLayer(1);
+  foreground->PreserveDepthBufferOn();
+  foreground->InteractiveOff();
+  foreground->SetActiveCamera(&camera());
+  addLights(*foreground);
+  overlay->SetLayer(2);
   overlay->InteractiveOff();
   overlay->SetActiveCamera(&camera());
   addLights(*overlay);
-  corner->SetLayer(1);
+  corner->SetLayer(2);
   corner->InteractiveOff();
   corner->AddActor(axes);
 }
 
 void PictureStage::attachTo(vtkRenderWindow& window) {
-  window.SetNumberOfLayers(2);
-  for (vtkRenderer* renderer : {scene.Get(), overlay.Get(), corner.Get()})
+  window.SetNumberOfLayers(3);
+  for (vtkRenderer* renderer : {scene.Get(), foreground.Get(), overlay.Get(), corner.Get()})
     window.AddRenderer(renderer);
 }
 
@@ -112,7 +121,18 @@ void PictureStage::setGround(const palette::BackgroundStyle& style) {
 
 void PictureStage::setHalfSize(bool on) {
   if (on && !half_size_) half_size_ = vtkSmartPointer<HalfSizePass>::New();
+  is_half_size_ = on;
   scene->SetPass(on ? half_size_.Get() : nullptr);
+}
+
+// The last of both that draws anything smooths what the other has drawn, too.
+void PictureStage::setSmooth(bool on) {
+  const bool in_front = foreground->VisibleActorCount() > 0, of_bodies = on && !in_front;
+  foreground->SetUseFXAA(on && in_front);
+  if (scene->GetUseFXAA() == of_bodies) return;
+  scene->SetUseFXAA(of_bodies);
+  kept_.drop();
+  if (!is_half_size_) scene->SetPass(nullptr);
 }
 
 std::array<int, 2> PictureStage::size() const {
@@ -135,13 +155,48 @@ double PictureStage::placeCorner(double distance, double share, double lines) {
   return side;
 }
 
+void PictureStage::setRange() {
+  vtkBoundingBox all;
+  for (vtkRenderer* renderer : {scene.Get(), foreground.Get()})
+    if (const vtkBoundingBox box(renderer->ComputeVisiblePropBounds()); box.IsValid())
+      all.AddBox(box);
+  if (!all.IsValid()) return;
+  std::array<double, 6> bounds{};
+  all.GetBounds(bounds.data());
+  scene->ResetCameraClippingRange(bounds.data());
+}
+
+bool PictureStage::frontIsInRange() const {
+  const vtkBoundingBox box(foreground->ComputeVisiblePropBounds());
+  if (!box.IsValid()) return true;
+  const Vec3 eye(camera().GetPosition()), along(camera().GetDirectionOfProjection());
+  const double* range = camera().GetClippingRange();
+  for (int i = 0; i < 8; ++i) {
+    Vec3 corner_of_box;
+    box.GetCorner(i, corner_of_box.data());
+    const double depth = (corner_of_box - eye).dot(along);
+    if (depth < range[0] || depth > range[1]) return false;
+  }
+  return true;
+}
+
 bool PictureStage::finishFrame() {
-  scene->ResetCameraClippingRange();
   const CameraState place = placeOf(camera());
-  const bool changed = dirty || place != drawn_from_ || size() != drawn_size_;
+  const bool bodies = dirty || place != drawn_from_ || size() != drawn_size_ || !frontIsInRange();
+  const bool changed = bodies || front_dirty;
+  auto* window = scene->GetRenderWindow();
+  if (bodies) {
+    setRange();
+    kept_.drop();
+  } else if (front_dirty && !kept_.has() && window != nullptr && window->GetMultiSamples() == 0) {
+    kept_.keepNext();
+  }
+  scene->SetPass(is_half_size_ && !kept_.has() ? half_size_.Get()
+                 : kept_.has()                 ? &kept_.pass()
+                                               : nullptr);
   drawn_from_ = place;
   drawn_size_ = size();
-  dirty = false;
+  dirty = front_dirty = false;
   return changed;
 }
 

@@ -13,14 +13,17 @@
 
 #include "visualization/values/camera.h"
 #include "visualization/values/text_style.h"
+#include "visualization/view/kept_picture.h"
 
 namespace patina {
 
 struct PictureStage {
-  vtkNew<vtkRenderer> scene, overlay, corner; // nothing hides the overlay
+  // Bodies; what they hide or it hides, drawn after them from the same camera; what nothing hides.
+  vtkNew<vtkRenderer> scene, foreground, overlay, corner;
   vtkSmartPointer<vtkAxesActor> axes;
   palette::BackgroundStyle ground = palette::kLight;
-  bool dirty = true; // the picture has changed since the last finishFrame()
+  bool dirty = true;       // the bodies have changed since the last finishFrame()
+  bool front_dirty = true; // only what other renderers draw has
 
   PictureStage();
   void setUp(); // call once, when the scene has its actors
@@ -29,6 +32,8 @@ struct PictureStage {
   // Renders bodies at half the resolution and scales them up, four times as fast with software
   // OpenGL; texts and bars stay sharp. For pictures in motion.
   void setHalfSize(bool on);
+  // Smooth edges (FXAA) of bodies and what is before them; call after finishFrame().
+  void setSmooth(bool on);
 
   vtkCamera& camera() const { return *scene->GetActiveCamera(); }
   std::array<int, 2> size() const; // [pixels]; zeros without a window
@@ -37,11 +42,18 @@ struct PictureStage {
   // Turns the corner's camera like the scene's, at this distance. The corner is a square, `share`
   // of the picture's height wide, or `lines` of text in small pictures. Returns its side [pixels].
   double placeCorner(double distance, double share, double lines);
-  // Call last before a render. Returns true if the picture differs from the last one.
+  // Call last before a render. Returns true if the picture differs from the last one. In a window
+  // of one sample per pixel the bodies are not drawn again while only `front_dirty` is set.
   bool finishFrame();
+  bool keepsBodies() const { return kept_.has(); } // the next render does not draw them
 
  private:
+  bool frontIsInRange() const; // of the camera's depth
+  void setRange();
+
   vtkSmartPointer<vtkRenderPass> half_size_;
+  bool is_half_size_ = false;
+  KeptPicture kept_{*scene};
   CameraState drawn_from_{};
   std::array<int, 2> drawn_size_{};
 };

@@ -40,11 +40,11 @@ struct SceneView::Impl : PictureStage {
   std::future<vtkSmartPointer<vtkPolyData>> coarse_made; // being made
   bool has_coarse = false, moving = false;
   vtkNew<vtkOutlineSource> outline;
-  vtkNew<vtkActor> extent_actor;
+  vtkSmartPointer<vtkActor> extent_actor = outlineActor(*outline);
   SliceLayer slice{*scene, *overlay};
   BandLayer band_layer{*scene, *overlay};
   StabilityLayer stability{*scene, *overlay};
-  ToolLayer tool{*scene, *overlay};
+  ToolLayer tool{*foreground, *overlay};
   NodeLayer nodes{*overlay};
   PaintLayer paint{*scene, *overlay};
   BrushCursor brush{*overlay};
@@ -319,13 +319,6 @@ SceneView::SceneView() : my_(std::make_unique<Impl>()) {
   my_->coarse_actor->SetBackfaceProperty(inner);
   my_->scene->AddActor(my_->coarse_actor);
 
-  const vtkNew<vtkPolyDataMapper> mapper;
-  my_->outline->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-  mapper->SetInputConnection(my_->outline->GetOutputPort());
-  my_->extent_actor->SetMapper(mapper);
-  my_->extent_actor->GetProperty()->SetColor(palette::forVtk(palette::kSecondary));
-  my_->extent_actor->GetProperty()->SetLineWidth(1.5);
-  my_->extent_actor->GetProperty()->LightingOff();
   my_->scene->AddActor(my_->extent_actor);
 
   my_->line->GetProperty()->LightingOff();
@@ -407,7 +400,7 @@ bool SceneView::hasPaint(PaintQuantity quantity) const {
 void SceneView::setBrush(const std::optional<BrushCursorState>& place) {
   if (place == my_->brush_place) return;
   my_->brush_place = place;
-  my_->brush_stale = my_->dirty = true;
+  my_->brush_stale = my_->front_dirty = true;
 }
 
 void SceneView::setMirror(const std::optional<MirrorState>& place) {
@@ -475,7 +468,7 @@ void SceneView::setLine(const std::optional<std::pair<Vec3, Vec3>>& ends) {
     mapperOf(*my_->line).SetInputData(line->GetOutput());
   }
   my_->line->SetVisibility(ends.has_value());
-  my_->dirty = true;
+  my_->front_dirty = true;
 }
 
 void SceneView::setBand(const std::optional<TouchBand>& band) {
@@ -496,7 +489,7 @@ void SceneView::setAnnotations(const std::vector<Annotation>& annotations) {
   if (annotations == my_->annotated) return;
   my_->annotated = annotations;
   my_->annotations.set(annotations);
-  my_->dirty = true;
+  my_->front_dirty = true;
 }
 
 void SceneView::setTipRadius(double radius) {
@@ -512,8 +505,7 @@ void SceneView::setTool(const ToolSample& sample) {
   my_->sample = sample;
   my_->tool.update(sample);
   if (first) my_->applyVisibility();
-  my_->nodes_stale = true;
-  my_->dirty = true;
+  my_->nodes_stale = my_->front_dirty = true;
 }
 
 void SceneView::show(Layer layer, bool on) {
@@ -628,6 +620,14 @@ void SceneView::setInteracting(bool moving) {
   }
   my_->setHalfSize(moving);
   my_->dirty = my_->dirty || my_->coarseShown() != shown || was != moving;
+}
+
+void SceneView::setSmooth(bool on) {
+  my_->setSmooth(on);
+}
+
+bool SceneView::keepsBodies() const {
+  return my_->keepsBodies();
 }
 
 void SceneView::fit() {

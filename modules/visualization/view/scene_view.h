@@ -110,12 +110,16 @@ class SceneView {
   // Level of detail while the camera moves, if rendering is slow: bodies at half the resolution,
   // and a large mesh with fewer triangles once a background task has made it.
   void setInteracting(bool moving);
-  void fit();          // everything, from the present direction
-  Box3 extent() const; // extent of mesh and field; never empty
+  void setSmooth(bool on); // edges (FXAA); call between prepare() and the render
+  void fit();              // everything, from the present direction
+  Box3 extent() const;     // extent of mesh and field; never empty
 
   // Call before a render: updates everything that depends on the camera. Returns true if something
   // changed since the last call.
   bool prepare();
+  // After prepare(): only tool, cursor, lines or annotations have moved, and the next render draws
+  // them over the picture of the bodies that it has kept.
+  bool keepsBodies() const;
 
  private:
   struct Impl;
