@@ -19,7 +19,7 @@ class PressFrames : public DrivenWindow {
  protected:
   struct Rate {
     double per_second = 0;
-    double longest = 0; // of 99 % of the gaps [s]
+    double longest = 0; // the longest gap without the longest hundredth [s]
   };
   // Drags with this button over the middle for two seconds, and counts the frames.
   Rate dragged(int button) {

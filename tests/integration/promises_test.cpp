@@ -73,7 +73,7 @@ class Promises : public EveryCommand {
   static std::string stateOf(const std::string& output) {
     if (!fs::exists(output)) return "";
     if (fs::is_regular_file(output)) return readFile(output);
-    if (fs::exists(output + "/frames")) return recordingState(output);
+    if (fs::exists(output + "/camera.yml")) return recordingState(output);
     if (!isWorkspace(output)) return isUnfinishedWorkspace(output) ? "" : "is no workspace";
     const OpenedWorkspace opened = openWorkspace(output);
     const FoldedJournal fold = folded(opened.journal, output);
@@ -89,8 +89,8 @@ class Promises : public EveryCommand {
   }
   // A recording that has begun stays, because the hand's motion cannot be repeated.
   static std::string recordingState(const std::string& scan) {
-    const auto frames = std::distance(fs::directory_iterator(scan + "/frames"), {});
     if (!fs::exists(scan + "/frames.csv")) return "";
+    const auto frames = std::distance(fs::directory_iterator(scan + "/frames"), {});
     const std::string table = readFile(scan + "/frames.csv");
     const auto rows = std::count(table.begin(), table.end(), '\n') - 1;
     return rows > 0 && frames >= rows ? "recorded" : "";
@@ -145,6 +145,11 @@ class Promises : public EveryCommand {
     if (failed) expectOneLine(outcome.err);
     EXPECT_TRUE(agrees) << what << outcome.exit << " " << outcome.err << "is\n" << state;
     differences_ += !agrees;
+    // A killed program leaves nothing that hinders the next one.
+    if (outcome.exit == 128 + SIGKILL && !change.has_intent && state == change.before) {
+      EXPECT_LE(run(change.words).exit, 1) << what;
+      EXPECT_EQ(stateOf(change.output), change.after) << what;
+    }
     if (!change.has_intent) return;
     const Environment environment(shim(more_));
     const Outcome again = run(withIntent(change)); // once, whether it had happened or not

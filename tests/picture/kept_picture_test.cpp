@@ -18,7 +18,7 @@
 namespace patina {
 namespace {
 
-constexpr double kTouchedRadius = 0.03; // of the ball [m]
+constexpr double kTouchedRadius = 0.03; // the ball's [m]
 
 ToolSample tipAt(const Vec3& p) {
   ToolSample sample;

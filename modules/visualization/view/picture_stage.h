@@ -48,7 +48,7 @@ struct PictureStage {
   bool keepsBodies() const { return kept_.has(); } // the next render does not draw them
 
  private:
-  bool frontIsInRange() const; // of the camera's depth
+  bool frontIsInRange() const; // the camera's range of depth holds it
   void setRange();
 
   vtkSmartPointer<vtkRenderPass> half_size_;
