@@ -1,6 +1,7 @@
 #include "visualization/files/volume_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -180,9 +181,9 @@ class BlockCheck {
   std::uint64_t startOfAppended(std::uint64_t after) { // behind an underscore
     std::ifstream file(path_, std::ios::binary);
     file.seekg(static_cast<std::streamoff>(after));
-    char c = 0;
-    for (; after < size_ && c != '_' && file.get(c); ++after) {
-    }
+    char c = ' ';
+    while (std::isspace(static_cast<unsigned char>(c)) && file.get(c)) ++after;
+    if (c != '_') fail("its appended data do not begin with an underscore");
     return after;
   }
   void check(std::uint64_t position, bool raw) {
