@@ -342,6 +342,7 @@ WorkspaceStorage::Opened opened(const std::filesystem::path& folder, bool own, b
 struct SceneResult {
   Scene scene;
   bool saved = true; // this command wrote it
+  bool whole = true; // nothing of a damaged workspace was lost
 };
 
 // Computes the new scene before the journal is touched, so that a rejected change leaves no trace.
@@ -390,6 +391,7 @@ SceneResult recovered(const SceneCommandOptions& options, Console& console) {
         (std::filesystem::is_empty(to) || isUnfinishedWorkspace(to))))
     throw FileError(to.string(), 0, "exists; choose a new folder for the recovered scene");
   const auto found = opened(from, false, true, console);
+  bool whole = found.notes.empty();
   try {
     WorkspaceStorage::overwrite(to, *found.history, console.intent);
   } catch (const DiskError&) { // a disk error, not damage: the history is still there
@@ -397,9 +399,10 @@ SceneResult recovered(const SceneCommandOptions& options, Console& console) {
   } catch (const Error& error) {
     console.warn(std::string(error.what()) + ": recovered without its history");
     saveWorkspace(found.history->scene(), to, console.intent);
+    whole = false;
   }
   console.markCommitted();
-  return {found.history->scene()};
+  return {found.history->scene(), true, whole};
 }
 
 int runScene(const SceneCommandOptions& options, Console& console) {
@@ -408,7 +411,8 @@ int runScene(const SceneCommandOptions& options, Console& console) {
                               : pathExists(folder) && isWorkspace(folder)
                                   ? changed(folder, options, console)
                                   : created(folder, options, console);
-  return report(folder, outcome.scene, outcome.saved, console);
+  const int code = report(folder, outcome.scene, outcome.saved, console);
+  return outcome.whole ? code : 1;
 }
 
 } // namespace
@@ -455,7 +459,7 @@ Command sceneCommand() {
           "names the step.\n"
           "--recover reads the intact parts of a damaged workspace, reports what is lost, and "
           "writes the rest to the output, which may be the damaged folder itself only if it is "
-          "named.",
+          "named; it exits with 1 if anything is lost.",
       .examples = {"patina scene -o cup --add cup.ply --unit cm --set stiffness=800",
                    "patina scene -o cup --add spoon.ply@spoon.txt --move cup@aside.txt",
                    "patina scene -o cup --set friction.static=0.5 --set friction.dynamic=0.3",
