@@ -121,9 +121,11 @@ TEST_F(VolumeBounds, ArraysThatTheFileCannotHoldAreRefused) {
 // VTK reads an array that it could not make.
 TEST_F(VolumeBounds, ArraysOfUnknownTypesAreRefused) {
   const std::string whole = volume(points("type=\"Float64\"", "1 2 3 4 5 6 7 8"));
-  for (const char* array : {"<DataArray type=\"Float.4\" Name=\"a\" NumberOfTuples=\"1\" "
-                            "format=\"ascii\">1</DataArray>",
-                            "<DataArray Name=\"a\" NumberOfTuples=\"1\">1</DataArray>", "<a/>"}) {
+  for (const char* array :
+       {"<DataArray type=\"Float.4\" Name=\"a\" NumberOfTuples=\"1\" "
+        "format=\"ascii\">1</DataArray>",
+        "<DataArray Name=\"a\" NumberOfTuples=\"1\">1</DataArray>", "<a/>",
+        "<FieldData Name=\"a\" type=\"Float65\"/>", "<PointData Name=\"a\" type=\"Float65\"/>"}) {
     std::string bytes = whole;
     bytes.insert(bytes.find("<Piece"), std::string("<FieldData>") + array + "</FieldData>");
     EXPECT_NE(refusal(bytes).find("truncated or damaged"), std::string::npos);

@@ -203,6 +203,10 @@ class BlockCheck {
   std::vector<std::uint64_t> offsets_; // offsets of arrays in the appended data
 };
 
+bool isArray(std::string_view tag) {
+  return tag.starts_with("DataArray") || tag.starts_with("Array");
+}
+
 // Checks the header first, because the reader calls itself for nested elements and allocates what
 // the header requests.
 void checkHeader(const std::filesystem::path& path) {
@@ -212,6 +216,10 @@ void checkHeader(const std::filesystem::path& path) {
   BlockCheck blocks(path);
   forEachTag(path, [&](std::string_view tag, std::uint64_t after) {
     blocks.take(tag, after);
+    // The reader takes whatever has a name for an array.
+    if (attributeOf(tag, "Name").data() != nullptr && !isArray(tag))
+      throw FileError(path.string(), 0,
+                      "cannot be read: truncated or damaged: a named element is no array");
     if (tag.starts_with("FieldData")) {
       in_field = true;
     } else if (tag.starts_with("PointData") || tag.starts_with("CellData")) {
@@ -226,7 +234,7 @@ void checkHeader(const std::filesystem::path& path) {
       in_piece = true;
       in_field = false;
       piece_bytes = 0;
-    } else if (tag.starts_with("DataArray") || tag.starts_with("Array")) {
+    } else if (isArray(tag)) {
       const double components = parseNumber(attributeOf(tag, "NumberOfComponents")).value_or(1);
       const double tuples = parseNumber(attributeOf(tag, "NumberOfTuples")).value_or(0);
       const double bytes = (in_piece ? nodes : std::abs(tuples)) *
