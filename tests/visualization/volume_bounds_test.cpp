@@ -118,6 +118,16 @@ TEST_F(VolumeBounds, ArraysThatTheFileCannotHoldAreRefused) {
   EXPECT_NE(refusal(bytes).find("cannot hold"), std::string::npos);
 }
 
+TEST_F(VolumeBounds, PiecesThatAreNotInTheirVolumeAreRefused) {
+  const std::string whole = volume(points("type=\"Float64\"", "1 2 3 4 5 6 7 8"));
+  for (const char* extent : {"0 2 0 1 0 1", "-1 1 0 1 0 1", "1 0 0 1 0 1", "0 1 0 1 0", ""}) {
+    std::string bytes = whole;
+    const std::size_t at = bytes.find("Piece Extent=\"") + 14;
+    bytes.replace(at, bytes.find('"', at) - at, extent);
+    EXPECT_NE(refusal(bytes).find("Extent"), std::string::npos) << extent;
+  }
+}
+
 // VTK reads an array that it could not make.
 TEST_F(VolumeBounds, ArraysOfUnknownTypesAreRefused) {
   const std::string whole = volume(points("type=\"Float64\"", "1 2 3 4 5 6 7 8"));

@@ -1,6 +1,7 @@
 #include "visualization/files/volume_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -70,19 +71,33 @@ void checkThree(std::string_view tag, const std::string& name, bool positive,
                     "has " + std::to_string(count) + " numbers in its " + name + ", not three");
 }
 
-double nodesIn(std::string_view extent, const std::filesystem::path& path) {
-  if (extent.empty()) throw FileError(path.string(), 0, "has no WholeExtent");
-  std::istringstream numbers{std::string(extent)};
-  double nodes = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    double low = 0, high = 0;
+using Extent = std::array<double, 6>;
+
+Extent extentOf(std::string_view tag, const std::string& name, const std::filesystem::path& path) {
+  const std::string_view text = attributeOf(tag, name);
+  if (text.empty()) throw FileError(path.string(), 0, "has no " + name);
+  std::istringstream numbers{std::string(text)};
+  Extent extent{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double &low = extent[2 * axis], &high = extent[2 * axis + 1];
     if (!(numbers >> low >> high) || high < low)
-      throw FileError(path.string(), 0, "has a WholeExtent that is not six ascending numbers");
-    nodes *= high - low + 1;
+      throw FileError(path.string(), 0, "has an " + name + " that is not six ascending numbers");
   }
+  return extent;
+}
+
+double nodesIn(const Extent& extent, const std::filesystem::path& path) {
+  double nodes = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) nodes *= extent[2 * axis + 1] - extent[2 * axis] + 1;
   if (nodes > 1073741824.0)
     throw FileError(path.string(), 0, "has more than 2^30 nodes: resample it to a smaller grid");
   return nodes;
+}
+
+bool contains(const Extent& whole, const Extent& part) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (part[2 * axis] < whole[2 * axis] || part[2 * axis + 1] > whole[2 * axis + 1]) return false;
+  return true;
 }
 
 // Bytes that one byte of the file can stand for.
@@ -213,6 +228,7 @@ void checkHeader(const std::filesystem::path& path) {
   checkKind(path);
   double nodes = 0, expansion = 8, field_bytes = 0, piece_bytes = 0, most_bytes = 0;
   bool in_piece = false, in_field = false;
+  Extent whole{};
   BlockCheck blocks(path);
   forEachTag(path, [&](std::string_view tag, std::uint64_t after) {
     blocks.take(tag, after);
@@ -227,12 +243,15 @@ void checkHeader(const std::filesystem::path& path) {
     } else if (tag.starts_with("VTKFile")) {
       expansion = mostExpansion(attributeOf(tag, "compressor"));
     } else if (tag.starts_with("ImageData")) {
-      nodes = nodesIn(attributeOf(tag, "WholeExtent"), path);
+      whole = extentOf(tag, "WholeExtent", path);
+      nodes = nodesIn(whole, path);
       checkThree(tag, "Spacing", true, path);
       checkThree(tag, "Origin", false, path);
     } else if (tag.starts_with("Piece")) {
       in_piece = true;
       in_field = false;
+      if (!contains(whole, extentOf(tag, "Extent", path)))
+        throw FileError(path.string(), 0, "has a piece whose Extent is not in its WholeExtent");
       piece_bytes = 0;
     } else if (isArray(tag)) {
       const double components = parseNumber(attributeOf(tag, "NumberOfComponents")).value_or(1);
