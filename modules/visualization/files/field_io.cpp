@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -43,17 +44,11 @@ float voxels(float metres, double voxel) {
 
 // Floats of one sign are ordered as their bit patterns, so one ulp is a difference of one.
 int ulpsBetween(float from, float to) {
-  std::int32_t a = 0, b = 0;
-  std::memcpy(&a, &from, sizeof a);
-  std::memcpy(&b, &to, sizeof b);
-  return b - a;
+  return static_cast<int>(std::bit_cast<std::uint32_t>(to) - std::bit_cast<std::uint32_t>(from));
 }
 float stepped(float value, int ulps) {
-  std::int32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  bits += ulps;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) +
+                              static_cast<std::uint32_t>(ulps));
 }
 
 template <typename Array, typename Data>
