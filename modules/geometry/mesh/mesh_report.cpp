@@ -9,14 +9,14 @@
 #include "core/error.h"
 #include "core/types.h"
 #include "geometry/mesh/disjoint_sets.h"
+#include "geometry/mesh/edge_uses.h"
 #include "geometry/mesh/point_grid.h"
-#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 namespace {
 
-// Closes the cracks of a mesh for its report: corners at equal or nearly equal positions, and
-// corners on an edge.
+// Closes the cracks of a mesh for its report: corners at nearly equal positions, and corners on an
+// edge.
 
 // Edge with one face, in the direction of that face.
 struct BoundaryEdge {
@@ -49,27 +49,6 @@ std::vector<Vec3> pointsOf(const std::vector<Vec3>& positions,
   points.reserve(vertices.size());
   for (const std::int32_t v : vertices) points.push_back(positions[index(v)]);
   return points;
-}
-
-// Welds boundary vertices at equal positions.
-BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border) {
-  BorderWeld result;
-  const std::vector<std::int32_t> vertices = verticesOf(border);
-  VertexWeld places(vertices.size());
-  std::vector<std::int32_t> first; // first vertex at each position
-  for (const std::int32_t v : vertices) {
-    const std::int32_t place = places.index(positions[index(v)]);
-    if (index(place) == first.size()) {
-      first.push_back(v);
-      continue;
-    }
-    if (result.vertex_of.empty()) {
-      result.vertex_of.resize(positions.size());
-      std::iota(result.vertex_of.begin(), result.vertex_of.end(), 0);
-    }
-    result.vertex_of[index(v)] = first[index(place)];
-  }
-  return result;
 }
 
 // Welds boundary vertices that are at most `tolerance` and a quarter of the shortest boundary edge
@@ -302,8 +281,7 @@ std::size_t countComponents(std::size_t vertices, const std::vector<Triangle>& t
   return components;
 }
 
-// Counts duplicates, components and edges; the triangles may use other vertex indices than the
-// mesh. Returns the edges with one face.
+// Counts duplicates, components and edges. Returns the edges with one face.
 std::vector<BoundaryEdge> countTopology(std::size_t vertices,
                                         const std::vector<Triangle>& triangles,
                                         std::vector<Fault>& faults, MeshReport& report) {
@@ -324,8 +302,8 @@ std::vector<BoundaryEdge> countTopology(std::size_t vertices,
   return border;
 }
 
-// Closes cracks at the boundary and counts again: corners at equal positions, then corners within
-// the tolerance, then corners on an edge. The mesh itself does not change.
+// Closes cracks at the boundary and counts again: corners within the tolerance, then corners on an
+// edge. The mesh itself does not change.
 void closeCracks(const TriangleMesh& mesh, std::vector<BoundaryEdge>& border,
                  std::vector<Fault>& faults, MeshReport& report) {
   Box3 box;
@@ -333,11 +311,10 @@ void closeCracks(const TriangleMesh& mesh, std::vector<BoundaryEdge>& border,
     for (int k = 0; k < 3 && faults[t] != Fault::non_finite; ++k) box.extend(mesh.corner(t, k));
   const double tolerance = kWeldTolerance * box.sizes().maxCoeff();
   if (!std::isfinite(tolerance)) return;
-  std::vector<Triangle> triangles;
-  const auto weld = [&](const BorderWeld& found) {
-    report.widest_crack = std::max(report.widest_crack, found.widest_crack);
-    if (found.vertex_of.empty()) return;
-    if (triangles.empty()) triangles = mesh.triangles;
+  const BorderWeld found = weldBorder(mesh.positions, border, tolerance);
+  report.widest_crack = found.widest_crack;
+  if (!found.vertex_of.empty()) {
+    std::vector<Triangle> triangles = mesh.triangles;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       Triangle& v = triangles[t];
       for (std::int32_t& corner : v) corner = found.vertex_of[index(corner)];
@@ -345,9 +322,7 @@ void closeCracks(const TriangleMesh& mesh, std::vector<BoundaryEdge>& border,
       if (repeats && faults[t] == Fault::none) faults[t] = Fault::closed_up;
     }
     border = countTopology(mesh.positions.size(), triangles, faults, report);
-  };
-  weld(weldBorder(mesh.positions, border));
-  if (!border.empty()) weld(weldBorder(mesh.positions, border, tolerance));
+  }
   if (border.empty()) return;
   const SplitBorder split = splitBorder(mesh.positions, border, tolerance);
   if (split.edges.size() == border.size()) return;
@@ -365,9 +340,10 @@ MeshReport inspect(const TriangleMesh& mesh, std::vector<Fault>& faults) {
   report.triangles = mesh.triangles.size();
   report.vertices = mesh.positions.size();
   faults = triangleFaults(mesh);
+  const TriangleMesh welded = weldedMesh(mesh);
   std::vector<BoundaryEdge> border =
-      countTopology(mesh.positions.size(), mesh.triangles, faults, report);
-  if (!border.empty()) closeCracks(mesh, border, faults, report);
+      countTopology(welded.positions.size(), welded.triangles, faults, report);
+  if (!border.empty()) closeCracks(welded, border, faults, report);
   report.boundary_edges = border.size();
   const auto count = [&](Fault fault) {
     return static_cast<std::size_t>(std::count(faults.begin(), faults.end(), fault));
