@@ -21,6 +21,9 @@ using signs::Part;
 namespace {
 
 constexpr float kSliver = 1;        // [voxel], largest depth of a sliver component
+// Pieces are joined across gaps of 0.7 voxel, see connectedParts(). No edge across such a gap has
+// nodes farther from the surface in sum than 1 + 0.7.
+constexpr float kLooseMargin = 0.7F;
 constexpr float kOnSurface = 1e-6F; // [voxel]
 constexpr std::int8_t kInside = -1; // signs of phi
 constexpr std::int8_t kOutside = 1;
@@ -41,7 +44,7 @@ class Signer {
                            [](const PartSides& part) { return part.joined; })) {}
 
   std::size_t run() {
-    parts_ = signs::connectedComponents(builder_);
+    parts_ = signs::connectedComponents(builder_, loose_ ? kLooseMargin : signs::kMargin);
     sign_.assign(parts_.parts.size(), 0);
     vote_.assign(parts_.parts.size(), kUnknownVote);
     depth_.assign(parts_.parts.size(), 0);
@@ -247,11 +250,13 @@ class Signer {
   void signSlivers() {
     std::vector<Sliver> all = slivers();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), 64), [&](const auto& range) {
+      signs::NearbyBlocks blocks(builder_);
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
         const Part& part = parts_.parts[all[i].deepest];
         all[i].has_visible_node =
             part.depth > kOnSurface &&
-            signs::visibleDeeperNode(builder_, tree_, part.slot, part.deepest, all[i].seen);
+            signs::visibleDeeperNode(blocks, tree_, part.slot, part.deepest, all[i].seen,
+                                     loose_ ? kLooseMargin : signs::kExact);
       }
     });
     progress_.throwIfCancelled();
