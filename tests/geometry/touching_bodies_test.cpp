@@ -1,7 +1,6 @@
 // Bodies that touch are counted by place: the same whether they share vertices or not.
 #include <gtest/gtest.h>
 
-#include "geometry/mesh/edge_uses.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/sides/inner_faces.h"
@@ -51,8 +50,8 @@ TEST(TouchingBodies, AreCountedByPlace) {
   const std::vector<Touching> cases = configurations();
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Touching& wanted = cases[i];
-    for (const TriangleMesh& mesh :
-         {wanted.mesh, weldedMesh(wanted.mesh), withShrunkenTriangles(wanted.mesh, 0)}) {
+    const TriangleMesh welded{wanted.mesh.positions, weldedTriangles(wanted.mesh), {}};
+    for (const TriangleMesh& mesh : {wanted.mesh, welded, withShrunkenTriangles(wanted.mesh, 0)}) {
       const MeshReport report = inspect(mesh);
       EXPECT_EQ(report.components, wanted.components) << i;
       EXPECT_EQ(report.non_manifold_edges, wanted.non_manifold) << i;

@@ -20,7 +20,7 @@ using signs::Part;
 
 namespace {
 
-constexpr float kSliver = 1;        // [voxel], largest depth of a sliver component
+constexpr float kSliver = 1; // [voxel], largest depth of a sliver component
 // Pieces are joined across gaps of 0.7 voxel, see connectedParts(). No edge across such a gap has
 // nodes farther from the surface in sum than 1 + 0.7.
 constexpr float kLooseMargin = 0.7F;

@@ -110,14 +110,14 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
   DisjointSets pieces(triangles.size());
   std::vector<std::int32_t> crossed;
   const auto rises = [&](const EdgeUse& use) {
-    return triangles[index(use.face)][static_cast<std::size_t>(use.edge)] == use.low;
+    return triangles[index(use.face)][index(use.edge)] == use.low;
   };
   const auto runOf = [&](const EdgeUse& use) {
     return rises(use) ? std::array{use.low, use.high} : std::array{use.high, use.low};
   };
   forEachEdge(
-      triangles, first_of, [](std::size_t) { return true; },
-      [&](auto first, auto last) {
+      triangles, [&](std::size_t f) { return index(first_of[f]) == f; },
+      [&](const EdgeUse* first, const EdgeUse* last) {
         if (last - first == 1) found.rims.push_back({runOf(*first), first->face, first->edge});
         if (last - first == 2 && rises(first[0]) == rises(first[1])) crossed.push_back(first->face);
         for (auto use = first + 1; use != last; ++use) pieces.join(first->face, use->face);
@@ -219,10 +219,12 @@ class LeastTriangulation {
 class Loops {
  public:
   Loops(std::size_t points, const std::vector<std::array<std::int32_t, 2>>& edges)
-      : edges_(edges), of_point_(points), used_(edges.size()), place_(points, kNowhere) {
-    for (std::size_t e = 0; e < edges.size(); ++e)
-      for (const std::int32_t p : edges[e]) of_point_[static_cast<std::size_t>(p)].push_back(e);
-  }
+      : edges_(edges), of_point_(points,
+                                 [&](const auto& visit) {
+                                   for (std::size_t e = 0; e < edges.size(); ++e)
+                                     for (const std::int32_t p : edges[e]) visit(p, e);
+                                 }),
+        used_(edges.size()), place_(points, kNowhere) {}
 
   template <class Visit> void run(const Visit& visit) {
     for (std::size_t e = 0; e < edges_.size(); ++e)
@@ -254,7 +256,7 @@ class Loops {
   }
 
   std::size_t step(std::size_t from) {
-    for (const std::size_t e : of_point_[from]) {
+    for (const std::size_t e : of_point_.at(from)) {
       if (used_[e]) continue;
       used_[e] = true;
       const auto a = static_cast<std::size_t>(edges_[e][0]);
@@ -264,7 +266,7 @@ class Loops {
   }
 
   const std::vector<std::array<std::int32_t, 2>>& edges_;
-  std::vector<std::vector<std::size_t>> of_point_; // edges at each point
+  ByVertex<std::size_t> of_point_; // edges at each point
   std::vector<bool> used_;
   std::vector<std::size_t> place_; // index of each point in the walk
 };

@@ -1,11 +1,11 @@
-// Gives equal points one index by a hash of their bits.
+// Gives equal points one index by a hash of their bits, and so merges the vertices of a mesh.
 #pragma once
 
 #include <bit>
 #include <cstdint>
 #include <vector>
 
-#include "core/types.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace patina {
 
@@ -73,5 +73,21 @@ class VertexWeld {
   std::vector<Slot> slots_;
   std::vector<Vec3> points_;
 };
+
+// Returns the triangles of a mesh with the first vertex at each position for all that are there.
+inline std::vector<Triangle> weldedTriangles(const TriangleMesh& mesh) {
+  VertexWeld weld(mesh.positions.size());
+  std::vector<std::int32_t> first, first_of; // first vertex of each point; of each vertex
+  first_of.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) {
+    const auto place = static_cast<std::size_t>(weld.index(p));
+    if (place == first.size()) first.push_back(static_cast<std::int32_t>(first_of.size()));
+    first_of.push_back(first[place]);
+  }
+  std::vector<Triangle> triangles = mesh.triangles;
+  for (Triangle& t : triangles)
+    for (std::int32_t& v : t) v = first_of[static_cast<std::size_t>(v)];
+  return triangles;
+}
 
 } // namespace patina

@@ -58,10 +58,10 @@ struct OpenParts {
 // Otherwise `sides` holds for every part with a boundary; `two` also for parts without one that
 // cannot be oriented (a Klein bottle). All other parts are closed.
 //
-// Degenerate triangles must be left out, corners be finite. `winding`: of `mesh`. Parallel, and the
-// same for any number of threads.
-OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding,
-                    OpenSides sides = OpenSides::automatic, double reach = 0);
+// Degenerate triangles must be left out, corners be finite. `welded`: the weldedTriangles() of
+// `mesh`; `winding`: its winding number. Parallel, and the same for any number of threads.
+OpenParts openParts(const TriangleMesh& mesh, const std::vector<Triangle>& welded,
+                    const WindingNumber& winding, OpenSides sides, double reach);
 
 // The same for a mesh as read: ignores unusable triangles and inner faces, turns misoriented ones.
 OpenParts openParts(const TriangleMesh& mesh, OpenSides sides = OpenSides::automatic,
