@@ -20,10 +20,7 @@ using signs::Part;
 
 namespace {
 
-constexpr float kSliver = 1; // [voxel], largest depth of a sliver component
-// Pieces are joined across gaps of 0.7 voxel, see connectedParts(). No edge across such a gap has
-// nodes farther from the surface in sum than 1 + 0.7.
-constexpr float kLooseMargin = 0.7F;
+constexpr float kSliver = 1;        // [voxel], largest depth of a sliver component
 constexpr float kOnSurface = 1e-6F; // [voxel]
 constexpr std::int8_t kInside = -1; // signs of phi
 constexpr std::int8_t kOutside = 1;
@@ -39,12 +36,10 @@ class Signer {
   Signer(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
          const WindingNumber& winding, const OpenParts& open, Progress& progress)
       : builder_(builder), mesh_(mesh), tree_(tree), winding_(winding), open_(open),
-        progress_(progress),
-        loose_(std::any_of(open.decided.begin(), open.decided.end(),
-                           [](const PartSides& part) { return part.joined; })) {}
+        progress_(progress), gap_(static_cast<float>(open.gap / builder.field.grid.voxel)) {}
 
   std::size_t run() {
-    parts_ = signs::connectedComponents(builder_, loose_ ? kLooseMargin : signs::kMargin);
+    parts_ = signs::connectedComponents(builder_, signs::kMargin + gap_);
     sign_.assign(parts_.parts.size(), 0);
     vote_.assign(parts_.parts.size(), kUnknownVote);
     depth_.assign(parts_.parts.size(), 0);
@@ -83,7 +78,7 @@ class Signer {
   bool reachesDeep(std::size_t part) const {
     constexpr float kLeast = 0.5F; // [voxel]
     const float depth = parts_.parts[part].depth;
-    return 2 * depth >= depth_[parts_.root[part]] || (loose_ && depth >= kLeast);
+    return 2 * depth >= depth_[parts_.root[part]] || (gap_ > 0 && depth >= kLeast);
   }
   bool isStored(std::size_t part) const { return parts_.parts[part].slot >= 0; }
 
@@ -253,10 +248,9 @@ class Signer {
       signs::NearbyBlocks blocks(builder_);
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
         const Part& part = parts_.parts[all[i].deepest];
-        all[i].has_visible_node =
-            part.depth > kOnSurface &&
-            signs::visibleDeeperNode(blocks, tree_, part.slot, part.deepest, all[i].seen,
-                                     loose_ ? kLooseMargin : signs::kExact);
+        all[i].has_visible_node = part.depth > kOnSurface &&
+                                  signs::visibleDeeperNode(blocks, tree_, part.slot, part.deepest,
+                                                           all[i].seen, signs::kExact + gap_);
       }
     });
     progress_.throwIfCancelled();
@@ -324,7 +318,9 @@ class Signer {
   const WindingNumber& winding_;
   const OpenParts& open_;
   Progress& progress_;
-  const bool loose_; // some part consists of loose pieces
+  // Width of the gaps between loose pieces [voxel], 0 without such. The nodes of an edge through a
+  // gap are no farther from the surface in sum than its length and this.
+  const float gap_;
   Components parts_;
   std::vector<float> depth_;             // depth of each component, at its root
   std::vector<float> vote_;              // winding number at each part's deepest node

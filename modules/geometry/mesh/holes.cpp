@@ -23,10 +23,11 @@ constexpr std::size_t kSmallPiece = 4;                    // faces
 constexpr double kJoinedRim = 0.5, kJoinedSmallRim = 0.3; // fractions of a boundary's length
 
 // Marks boundary edges that match those of other pieces, joins such pieces and returns their former
-// roots.
+// roots. `gap` becomes the largest distance across which pieces are joined [m].
 std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
                                         const std::vector<std::size_t>& faces_of, double reach,
-                                        std::vector<RimEdge>& rims, DisjointSets& pieces) {
+                                        std::vector<RimEdge>& rims, DisjointSets& pieces,
+                                        double& gap) {
   std::vector<Vec3> middles;
   middles.reserve(rims.size());
   for (const RimEdge& rim : rims)
@@ -83,17 +84,38 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
     rim.covered = at.joined && at.covering >= 0;
   }
   // Joins the piece to that of the matching edge, or else to all pieces nearby.
-  for (std::size_t n = 0; n < places.size(); ++n) {
-    const Place& at = places[n];
+  const auto isMatched = [&](const Place& at) {
+    return at.covering >= 0 && places[index(at.covering)].joined;
+  };
+  double square = 0;
+  for (const Place& at : places) {
     if (!at.joined) continue;
-    if (at.covering >= 0 && places[index(at.covering)].joined)
-      pieces.join(at.root, places[index(at.covering)].root);
-    else
-      grid.forEachNear(n, far, [&](std::size_t m) {
-        const bool asks_too = m > n && places[m].covering < 0;
-        if (places[m].joined && !asks_too) pieces.join(at.root, places[m].root);
-        return false;
-      });
+    if (!isMatched(at)) {
+      square = far * far;
+      continue;
+    }
+    const Place& other = places[index(at.covering)];
+    pieces.join(at.root, other.root);
+    square = std::max({square, squareOf(at.vertices[0], other.vertices[1]),
+                       squareOf(at.vertices[1], other.vertices[0])});
+  }
+  gap = std::sqrt(square);
+  // The largest set need not look about: the others do.
+  std::vector<std::size_t> size(faces_of.size());
+  for (const Place& at : places) ++size[index(pieces.find(at.root))];
+  const auto largest =
+      static_cast<std::int32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  const std::int32_t in_largest = pieces.find(largest);
+  std::vector<std::uint8_t> looks(places.size());
+  for (std::size_t n = 0; n < places.size(); ++n)
+    looks[n] = places[n].joined && pieces.find(places[n].root) != in_largest;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    if (!looks[n]) continue;
+    grid.forEachNear(n, far, [&](std::size_t m) {
+      if (places[m].joined && !(isMatched(places[n]) && isMatched(places[m])))
+        pieces.join(places[n].root, places[m].root);
+      return false;
+    });
   }
   std::vector<std::int32_t> joined;
   for (const Place& at : places)
@@ -126,7 +148,7 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
   std::vector<std::size_t> faces_of(triangles.size()); // count per root
   for (std::size_t f = 0; f < triangles.size(); ++f) ++faces_of[index(pieces.find(first_of[f]))];
   if (reach > 0 && !triangles.empty() && faces_of[0] < triangles.size())
-    joined = joinAlongRims(mesh.positions, faces_of, reach, found.rims, pieces);
+    joined = joinAlongRims(mesh.positions, faces_of, reach, found.rims, pieces, found.gap);
 
   found.part_of.resize(triangles.size());
   std::vector<std::uint8_t> doubled; // part has duplicate faces

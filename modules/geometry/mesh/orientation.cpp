@@ -33,6 +33,7 @@ class Parts {
   void join(std::int32_t f, std::int32_t g, bool opposed) {
     const Link a = find(f), b = find(g);
     const bool turned = (a.turned != b.turned) != opposed;
+    any_joined_ = true;
     if (a.root == b.root) {
       if (turned) one_sided_[index(a.root)] = 1;
       return;
@@ -43,12 +44,14 @@ class Parts {
     open_[index(low)] |= open_[index(high)];
   }
   void markOpen(std::int32_t face) { open_[index(find(face).root)] = 1; }
+  bool anyJoined() const { return any_joined_; }
   bool oneSided(std::int32_t root) const { return one_sided_[index(root)] != 0; }
   bool open(std::int32_t root) const { return open_[index(root)] != 0; }
 
  private:
   std::vector<Link> link_;
   std::vector<std::uint8_t> one_sided_, open_; // indexed by root
+  bool any_joined_ = false;
 };
 
 Parts connectedParts(const std::vector<Triangle>& triangles) {
@@ -102,6 +105,7 @@ void compareClosed(std::vector<TurnedPart*> closed) {
 std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh,
                                                const std::vector<Triangle>& welded) {
   Parts links = connectedParts(welded);
+  if (!links.anyJoined()) return {}; // loose triangles
   const std::size_t faces = mesh.triangles.size();
   std::vector<Parts::Link> link(faces);
   std::vector<std::int32_t> part_of(faces, -1); // indexed by root

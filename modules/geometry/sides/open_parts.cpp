@@ -232,6 +232,7 @@ OpenParts openParts(const TriangleMesh& mesh, const std::vector<Triangle>& trian
   if (isBalanced(triangles)) return result;
   const TriangleMesh welded{mesh.positions, triangles, {}};
   ConnectedParts found = connectedParts(welded, reach);
+  result.gap = found.gap;
   std::vector<Part> parts;
   for (ConnectedPart& part : found.parts)
     parts.push_back({std::move(part.faces), part.rim_edges > 0, false, part.joined});

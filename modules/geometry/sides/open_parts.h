@@ -42,6 +42,7 @@ struct OpenParts {
   std::vector<PartSides> decided;       // one a part; empty without boundary edges
   std::vector<FaceEdge> seams;          // edges along which loose pieces of one part meet
   std::vector<Hole> holes;              // holes of closed parts, the largest first
+  double gap = 0;                       // widest between joined pieces [m]
   std::size_t inner_triangles = 0;      // left out of a mesh as read, see innerFaces()
   bool any() const { return parts > 0; }
 };
