@@ -269,24 +269,25 @@ class Signer {
       if (isSliver(i)) sign_[i] = sign_[parts_.root[i]];
   }
 
-  // Returns the side of the nearest face at the deepest node: > 0 in front of it, 0 unless the
-  // nearest point is in the face's interior.
-  double sideOfNearest(const Part& part) const {
+  // Returns the side of the nearest face at the deepest node: > 0 in front of it, 0 if it has the
+  // sign of `wanted` or the nearest point is not in the face's interior.
+  double sideOfNearest(const Part& part, double wanted = 0) const {
     const std::int32_t face = builder_.face[static_cast<std::size_t>(part.slot)]->at(part.deepest);
     if (face < 0) return 0;
     const auto f = static_cast<std::size_t>(face);
     if (open_.any() && open_.open[f]) return 0;
     const Vec3 a = mesh_.corner(f, 0), b = mesh_.corner(f, 1), c = mesh_.corner(f, 2);
     const Vec3 p = world(part.slot, part.deepest);
-    const Vec3 w = closestBarycentric(p, a, b, c);
-    return w.minCoeff() < 1e-3 ? 0 : (b - a).cross(c - a).dot(p - a);
+    const double side = (b - a).cross(c - a).dot(p - a);
+    return side * wanted > 0 || closestBarycentric(p, a, b, c).minCoeff() < 1e-3 ? 0 : side;
   }
 
   // Returns true if the nearest face has the other sign.
   bool conflictsWithFace(const Sliver& sliver, std::int8_t sign) const {
     const Part& part = parts_.parts[sliver.deepest];
     if (outward_balance_ == 0 || part.depth < 1e-2F) return false;
-    return sideOfNearest(part) * (outward_balance_ > 0 ? 1 : -1) * sign < 0;
+    const int wanted = (outward_balance_ > 0 ? 1 : -1) * sign;
+    return sideOfNearest(part, wanted) != 0;
   }
 
   void write() {

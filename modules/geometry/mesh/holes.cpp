@@ -36,22 +36,23 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
   const double far = kNear * reach;
   const PointGrid grid(middles, far);
   struct Place {
-    std::array<std::int32_t, 2> vertices;
+    std::array<Vec3, 2> ends;
     std::int32_t root;          // root of its piece
     std::int32_t covering = -1; // matching edge of another piece
     double length;
     bool joined = false;
   };
-  const auto squareOf = [&](std::int32_t v, std::int32_t w) {
-    return (positions[index(v)] - positions[index(w)]).squaredNorm();
+  // Larger distance between the ends of edges that run in opposite directions.
+  const auto squareBetween = [](const Place& a, const Place& b) {
+    return std::max((a.ends[0] - b.ends[1]).squaredNorm(), (a.ends[1] - b.ends[0]).squaredNorm());
   };
   std::vector<Place> places(rims.size()); // in the grid's order
   std::vector<double> whole(faces_of.size()), shared(faces_of.size());
   for (std::size_t n = 0; n < places.size(); ++n) {
     const RimEdge& rim = rims[grid.point(n)];
     Place& at = places[n];
-    at.vertices = rim.vertices;
-    at.length = std::sqrt(squareOf(at.vertices[0], at.vertices[1]));
+    at.ends = {positions[index(rim.vertices[0])], positions[index(rim.vertices[1])]};
+    at.length = (at.ends[0] - at.ends[1]).norm();
     at.root = pieces.find(rim.face);
     whole[index(at.root)] += at.length;
   }
@@ -64,9 +65,7 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
         at.joined = true;
         const double limit =
             std::clamp(kSeam * std::min(at.length, other.length), kMinSeam * reach, far);
-        if (squareOf(at.vertices[0], other.vertices[1]) > limit * limit ||
-            squareOf(at.vertices[1], other.vertices[0]) > limit * limit)
-          return false;
+        if (squareBetween(at, other) > limit * limit) return false;
         at.covering = static_cast<std::int32_t>(m);
         return true;
       });
@@ -88,35 +87,22 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
     return at.covering >= 0 && places[index(at.covering)].joined;
   };
   double square = 0;
-  for (const Place& at : places) {
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const Place& at = places[n];
     if (!at.joined) continue;
-    if (!isMatched(at)) {
-      square = far * far;
+    if (isMatched(at)) {
+      pieces.join(at.root, places[index(at.covering)].root);
+      square = std::max(square, squareBetween(at, places[index(at.covering)]));
       continue;
     }
-    const Place& other = places[index(at.covering)];
-    pieces.join(at.root, other.root);
-    square = std::max({square, squareOf(at.vertices[0], other.vertices[1]),
-                       squareOf(at.vertices[1], other.vertices[0])});
-  }
-  gap = std::sqrt(square);
-  // The largest set need not look about: the others do.
-  std::vector<std::size_t> size(faces_of.size());
-  for (const Place& at : places) ++size[index(pieces.find(at.root))];
-  const auto largest =
-      static_cast<std::int32_t>(std::max_element(size.begin(), size.end()) - size.begin());
-  const std::int32_t in_largest = pieces.find(largest);
-  std::vector<std::uint8_t> looks(places.size());
-  for (std::size_t n = 0; n < places.size(); ++n)
-    looks[n] = places[n].joined && pieces.find(places[n].root) != in_largest;
-  for (std::size_t n = 0; n < places.size(); ++n) {
-    if (!looks[n]) continue;
+    square = far * far;
     grid.forEachNear(n, far, [&](std::size_t m) {
-      if (places[m].joined && !(isMatched(places[n]) && isMatched(places[m])))
-        pieces.join(places[n].root, places[m].root);
+      const bool asks_too = m > n && places[m].covering < 0;
+      if (places[m].joined && !asks_too) pieces.join(at.root, places[m].root);
       return false;
     });
   }
+  gap = std::sqrt(square);
   std::vector<std::int32_t> joined;
   for (const Place& at : places)
     if (pieces.find(at.root) != at.root) joined.push_back(at.root);
