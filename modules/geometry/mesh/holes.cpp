@@ -59,16 +59,24 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.size(), 4096), [&](const auto& part) {
     for (std::size_t n = part.begin(); n < part.end(); ++n) {
       Place& at = places[n];
-      grid.forEachNear(n, far, [&](std::size_t m) {
+      const auto limitOf = [&](double length) {
+        return std::clamp(kSeam * length, kMinSeam * reach, far);
+      };
+      // The middles of matching edges are no farther apart than their ends.
+      grid.forEachNear(n, std::min(far, limitOf(at.length) * (1 + 1e-9)), [&](std::size_t m) {
         const Place& other = places[m];
         if (other.root == at.root) return false;
         at.joined = true;
-        const double limit =
-            std::clamp(kSeam * std::min(at.length, other.length), kMinSeam * reach, far);
+        const double limit = limitOf(std::min(at.length, other.length));
         if (squareBetween(at, other) > limit * limit) return false;
         at.covering = static_cast<std::int32_t>(m);
         return true;
       });
+      if (!at.joined)
+        grid.forEachNear(n, far, [&](std::size_t m) {
+          at.joined = places[m].root != at.root;
+          return at.joined;
+        });
     }
   });
   for (const Place& at : places)
