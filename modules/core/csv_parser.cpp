@@ -22,14 +22,15 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) + 1 - first);
 }
 
-// Splits at separators outside quotes and removes the quotes.
+// Splits at separators outside quotes and removes the quotes, which open at a cell's start only.
+// Returns none if a quoted cell does not end in the line.
 std::vector<std::string> cellsOf(std::string_view line, char separator) {
   std::vector<std::string> cells(1);
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
       cells.back() += line[++i];
-    } else if (line[i] == '"') {
+    } else if (line[i] == '"' && (quoted || trimmed(cells.back()).empty())) {
       quoted = !quoted;
     } else if (line[i] == separator && !quoted) {
       cells.emplace_back();
@@ -37,6 +38,7 @@ std::vector<std::string> cellsOf(std::string_view line, char separator) {
       cells.back() += line[i];
     }
   }
+  if (quoted) return {};
   for (std::string& cell : cells) cell = trimmed(cell);
   return cells;
 }
@@ -63,6 +65,13 @@ const char* nameOfSeparator(char separator) {
   return separator == ';' ? "semicolons" : separator == '\t' ? "tabs" : "commas";
 }
 
+std::string lowerCase(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
 struct Heading {
   std::string name;                // lower case
   std::optional<std::string> unit; // absent without brackets
@@ -77,14 +86,22 @@ Heading headingIn(std::string_view text) {
     heading.unit = trimmed(text.substr(open + 1, text.size() - open - 2));
     text = trimmed(text.substr(0, open));
   }
-  heading.name = text;
-  for (char& c : heading.name)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  heading.name = lowerCase(text);
   return heading;
 }
 
-// Spellings of NaN and infinity by Microsoft's C library: 1.#IND, -1.#QNAN, 1.#INF.
-std::optional<double> microsoftNumber(std::string_view text) {
+// Returns true for an empty cell and the words that other programs write in place of a number.
+bool isMissing(std::string_view text) {
+  constexpr std::array<std::string_view, 11> kWords = {
+      "", "na", "n/a", "null", "#n/a", "#null!", "#num!", "#div/0!", "#value!", "#ref!", "#name?"};
+  return text.size() < 8 &&
+         std::find(kWords.begin(), kWords.end(), lowerCase(text)) != kWords.end();
+}
+
+// Reads other spellings of NaN and infinity: missing values, and 1.#IND, -1.#QNAN, 1.#INF of
+// Microsoft's C library.
+std::optional<double> foreignNumber(std::string_view text) {
+  if (isMissing(text)) return std::numeric_limits<double>::quiet_NaN();
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   if (!text.starts_with("1.#")) return std::nullopt;
@@ -94,6 +111,8 @@ std::optional<double> microsoftNumber(std::string_view text) {
   return negative ? -value : value;
 }
 
+constexpr const char* kOpenQuote =
+    "a quoted cell does not end in this line: remove the line break or the quote";
 constexpr const char* kDecimalComma = "decimal commas need semicolons or tabs between the columns";
 
 } // namespace
@@ -135,13 +154,21 @@ bool CsvParser::take(std::string_view line, std::vector<double>& row) {
   const bool blank = std::all_of(line.begin(), line.end(), [this](char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == separator_;
   });
-  if (blank) return false;
+  if (blank || isComment(line)) return false;
   row.assign(columns_.size(), std::numeric_limits<double>::quiet_NaN());
   if (std::memchr(line.data(), '"', line.size()) != nullptr)
     readQuotedRow(line, row);
   else
     readRow(line, row);
   return true;
+}
+
+// A number begins with neither # nor %, but the text of a first column that nobody reads may.
+bool CsvParser::isComment(std::string_view line) const {
+  const std::string_view text = trimmed(line);
+  return (text.starts_with('#') || text.starts_with('%')) &&
+         (cells_.front().target < 0 ? cellsOf(line, separator_).size() != cells_.size()
+                                    : !isMissing(trimmed(text.substr(0, text.find(separator_)))));
 }
 
 // Sets the target of the cell that holds the wanted column: the one with the same name and unit,
@@ -201,6 +228,8 @@ bool CsvParser::readHeader(std::string_view line) {
   std::vector<Cell> cells;
   for (const std::string& name : cellsOf(text, separator))
     cells.push_back({name.empty() ? "(no name)" : name});
+  if (cells.empty() && comment) return false;
+  if (cells.empty()) refuse(kOpenQuote);
   const auto fail = [&](const std::string& cause) {
     refuse("header is " + inQuotes(line) + ", separated by " + nameOfSeparator(separator) + ": " +
            cause);
@@ -266,8 +295,8 @@ void CsvParser::set(std::vector<double>& row, std::size_t column, double value,
   if (cell.multiplier != 1) value *= cell.multiplier;
   if (cell.divisor != 1) value /= cell.divisor;
   if (!std::isfinite(value) && first_not_finite_.empty())
-    first_not_finite_ =
-        "line " + std::to_string(line_) + ": " + printableText(cell.name) + " is " + inQuotes(text);
+    first_not_finite_ = "line " + std::to_string(line_) + ": " + printableText(cell.name) + " is " +
+                        (text.empty() ? "empty" : inQuotes(text));
   row[static_cast<std::size_t>(cell.target)] = value;
 }
 
@@ -281,7 +310,7 @@ double CsvParser::numberIn(std::string_view text, std::size_t column, bool may_h
   if (comma == std::string_view::npos || !may_have_comma) {
     std::optional<double> value = parseNumber(text);
     const bool has_point = value && point;
-    if (!value) value = microsoftNumber(text);
+    if (!value) value = foreignNumber(text);
     if (!value && separator_ == ',' && text.find(';') != std::string_view::npos)
       refuse(kDecimalComma);
     if (!value) refuseNumber(" is not a number");
@@ -294,7 +323,7 @@ double CsvParser::numberIn(std::string_view text, std::size_t column, bool may_h
   with_point[comma] = '.';
   std::optional<double> value;
   if (!point) value = parseNumber(with_point);
-  if (!value) value = microsoftNumber(with_point);
+  if (!value) value = foreignNumber(with_point);
   if (!value) refuseNumber(" is not a number: write one decimal sign and no thousands separators");
   if (points_) refuseNumber(" has a decimal comma, numbers before it decimal points");
   commas_ = true;
@@ -347,6 +376,7 @@ void CsvParser::readRow(std::string_view line, std::vector<double>& row) {
 
 void CsvParser::readQuotedRow(std::string_view line, std::vector<double>& row) {
   std::vector<std::string> texts = cellsOf(line, separator_);
+  if (texts.empty()) refuse(kOpenQuote);
   if (texts.size() == cells_.size() + 1 && texts.back().empty()) texts.pop_back();
   if (texts.size() != cells_.size()) refuseCount(line, texts.size());
   for (std::size_t column = 0; column < texts.size(); ++column)

@@ -19,7 +19,8 @@ struct CsvColumns {
 };
 
 // Parses one line after another. The separator is the first of semicolon, tab and comma that occurs
-// in the header; unless it is a comma, numbers may have decimal commas. Cells may be quoted. Throws
+// in the header; unless it is a comma, numbers may have decimal commas. Cells may be quoted, but
+// end in their line. An empty cell, NA, N/A, null and the errors of spreadsheets are NaN. Throws
 // FileError with the line and, if one is at fault, the column.
 class CsvParser {
  public:
@@ -31,7 +32,7 @@ class CsvParser {
   void assumeHeader(std::string_view line);
 
   // Returns true if the line is a row, and fills `row`: required, optional, other columns. Skips
-  // blank lines and, before the header, "sep=;" and lines that begin with #.
+  // blank lines, lines that begin with # or % and, before the header, "sep=;".
   bool take(std::string_view line, std::vector<double>& row);
 
   bool hasHeader() const { return has_header_; }
@@ -56,6 +57,7 @@ class CsvParser {
   };
 
   bool readHeader(std::string_view line);
+  bool isComment(std::string_view line) const;
   bool findColumn(std::size_t wanted, std::vector<Cell>& cells, std::string& cause) const;
   void readRow(std::string_view line, std::vector<double>& row);
   void readQuotedRow(std::string_view line, std::vector<double>& row);

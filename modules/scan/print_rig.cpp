@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/output_target.h"
 #include "core/staged_folder.h"
-#include "geometry/io/mesh_in_unit.h"
+#include "geometry/io/mesh_io.h"
 
 namespace patina {
 namespace {

@@ -38,7 +38,7 @@ bool hasRows(const std::string& text, int header_lines) {
   file.append(text);
   int lines = 0;
   for (std::string_view line; lines <= header_lines && file.next(line, true);)
-    lines += !line.empty() && line[0] != '#';
+    lines += !line.empty() && line[0] != '#' && line[0] != '%';
   return lines > header_lines;
 }
 

@@ -72,6 +72,7 @@ TEST(CsvDialects, SameTableIsReadInTheDialectOfEachProgram) {
       "# made by a logger\n#\n" + plain,
       "# " + plain,
       "% made by MATLAB\n%\n" + plain,
+      replaced(plain, "\n", "\n% said \"so, twice\n  # and, again\n"),
       replaced(plain, "\n", ",\n"),
       replaced(semicolons, "\n", ";\n") + ";;;;\n",
       "\"t [s]\",\"x [m]\",\"y [m]\",\"z "
@@ -87,6 +88,8 @@ TEST(CsvDialects, SameTableIsReadInTheDialectOfEachProgram) {
       "t [us],x [m],y [m],z [m]\n0,+1.5,-2.25,3\n250000,4,5.125,-6E-03\n",
       "t [s],x [m],y [m],z [m],note\n0,1.5,-2.25,3,\"first, of "
       "two\"\n0.25,4,5.125,-6e-3,12.05.2024\n",
+      "note,t [s],x [m],y [m],z [m]\n%7,0,1.5,-2.25,3\n% of 4, or more\n#8,0.25,4,5.125,-6e-3\n",
+      "t [s],x [m],y [m],z [m],tip\n0,1.5,-2.25,3,5\" ball\n0.25,4,5.125,-6e-3,3\"\n",
       "date;t [s];x [m];y [m];z [m]\n12.05.2024;0;1,5;-2,25;3\n12.05.2024;0,25;4;5,125;-6e-3\n",
   };
   for (const std::string& text : texts) EXPECT_EQ(tableRefusal(text), "") << text;
@@ -144,6 +147,25 @@ TEST(CsvDialects, FirstNonFiniteValueIsNamedWithItsPosition) {
   EXPECT_EQ(german.not_finite, "line 2: x [mm] is '1,#IND'");
 }
 
+TEST(CsvDialects, MissingValuesAreNaN) {
+  for (const std::string text : {"NA", "na", "N/A", "null", "NULL", "#N/A", "#DIV/0!", "#NUM!"})
+    for (const std::string& cell : {text, " " + text + " ", "\"" + text + "\""}) {
+      const ReadTable found =
+          readTable("t [s],x [m],y [m],z [m]\n0,1,2,3\n1,2," + cell + ",4\n" + text + ",2,3,4\n");
+      ASSERT_EQ(found.rows.size(), 3u) << text;
+      EXPECT_TRUE(std::isnan(found.rows[1][2]) && std::isnan(found.rows[2][0])) << text;
+      EXPECT_EQ(found.rows[1][3], 4);
+      EXPECT_EQ(found.not_finite, "line 3: y [m] is '" + text + "'");
+    }
+  for (const std::string row : {"0,,2,3", "0, ,2,3", "0,\"\",2,3", "0,,2,3,"}) {
+    const ReadTable found = readTable("t [s],x [m],y [m],z [m]\n" + row + "\n");
+    ASSERT_EQ(found.rows.size(), 1u) << row;
+    EXPECT_TRUE(std::isnan(found.rows[0][1])) << row;
+    EXPECT_EQ(found.not_finite, "line 2: x [m] is empty") << row;
+  }
+  EXPECT_EQ(readTable("t [s];x [m];y [m];z [m]\n0;1,5;2;\n").not_finite, "line 2: z [m] is empty");
+}
+
 TEST(CsvDialects, FaultsAreNamed) {
   const auto says = [](const std::string& text, const std::string& cause,
                        const CsvColumns& columns = kTipColumns) {
@@ -175,6 +197,11 @@ TEST(CsvDialects, FaultsAreNamed) {
   says(head + "0;1,5;3\n", "a.csv:2: 3 values where the header names 4, separated by semicolons");
   says(head + "0;1,5;3;4;5\n", "a.csv:2: 5 values where the header names 4");
   says("t [s],x [m],y [m],z [m]\n0,\"1,5\",2,x\n", "a.csv:2: z [m]: 'x' is not a number");
+  const std::string open_quote = ": a quoted cell does not end in this line: remove the line break";
+  says("\"t\n[s]\",x [m],y [m],z [m]\n0,1,2,3\n", "a.csv:1" + open_quote);
+  says(head + "0;1;2;3\n0;1;2;\"3\n\"\n", "a.csv:3" + open_quote);
+  says("t [s],x [m],y [m],z [m],note\n0,1,2,3,\"first,\nsecond\"\n", "a.csv:2" + open_quote);
+  says(head + "0;NAN0;2;3\n", "a.csv:2: x [m]: 'NAN0' is not a number");
   says("", "a.csv: is empty: its first line must be 't [s],x [m],y [m],z [m]'");
   says("# nothing\n\n", "a.csv: is empty");
   says("0,1,2,3\n1,2,3,4\n", "a.csv:1: header is '0,1,2,3'");

@@ -82,6 +82,23 @@ TEST(LooseTriangles, FormOneBodyDespiteOverlapsAndGaps) {
   }
 }
 
+TEST(LooseTriangles, DoNotLeakIntoAThinBody) {
+  const Vec3 size(0.1, 0.1, 0.005); // three voxels thick
+  const double voxel = voxelOf(box(size));
+  const BuiltField made = builtAs(loose(box(size, 40), 0.3 * voxel));
+  const FieldGrid& grid = made.field->grid;
+  NodeReader nodes(*made.field);
+  std::size_t wrong = 0;
+  for (int z = 0; z < grid.nodes[2]; ++z)
+    for (int y = 0; y < grid.nodes[1]; ++y)
+      for (int x = 0; x < grid.nodes[0]; ++x) {
+        const Vec3 p = grid.toWorld(Vec3(x, y, z));
+        const double beyond = (p.cwiseAbs() - 0.5 * size).maxCoeff(); // at most the distance
+        wrong += std::abs(beyond) > 0.6 * voxel && (nodes.phiAt(x, y, z) < 0) != (beyond < 0);
+      }
+  EXPECT_EQ(wrong, 0U);
+}
+
 TEST(LooseTriangles, FormABodyBesideAWeldedOne) {
   const TriangleMesh ball = icosphere(0.05, 24),
                      solid = moved(box(Vec3(0.1, 0.06, 0.08), 4), Vec3(0.12, 0, 0));

@@ -63,6 +63,7 @@ TEST(Slivers, FindDeeperNodeByDistanceOrFreeSegment) {
     spec.band = band;
     const FieldBuilder builder =
         distanceBlocks(mesh, tree, gridAround(bounds(mesh), spec), band, progress, 0, 1);
+    NearbyBlocks blocks(builder);
     for (std::size_t slot = 0; slot < builder.distance.size(); ++slot)
       for (std::size_t n = 0; n < kBlockNodes; ++n) {
         const float depth = builder.distance[slot]->phi()[n];
@@ -77,7 +78,7 @@ TEST(Slivers, FindDeeperNodeByDistanceOrFreeSegment) {
         std::stable_sort(deeper.begin(), deeper.end(),
                          [](auto& a, auto& b) { return a.margin > b.margin; });
         NodePlace found;
-        if (visibleDeeperNode(builder, tree, s, n, found)) {
+        if (visibleDeeperNode(blocks, tree, s, n, found)) {
           const auto seen = std::find_if(deeper.begin(), deeper.end(), [&](const Neighbour& to) {
             return to.place.top_index == found.top_index && to.place.node == found.node;
           });

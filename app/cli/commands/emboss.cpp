@@ -4,7 +4,7 @@
 #include "app/cli/output/reports.h"
 #include "core/error.h"
 #include "core/numbers.h"
-#include "geometry/io/mesh_in_unit.h"
+#include "geometry/io/mesh_io.h"
 #include "session/open/mesh_export.h"
 
 namespace patina::cli {

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/surface/models.h"
-#include "geometry/io/mesh_in_unit.h"
+#include "geometry/io/mesh_io.h"
 #include "geometry/mesh/mesh_report.h"
 #include "geometry/mesh/mesh_unit.h"
 #include "geometry/mesh/shapes.h"

@@ -2,7 +2,7 @@
 
 #include "app/cli/output/reports.h"
 #include "core/error.h"
-#include "geometry/io/mesh_file_type.h"
+#include "geometry/io/mesh_io.h"
 
 namespace patina::cli {
 

@@ -15,7 +15,7 @@
 #include "app/gui/toolkit/card.h"
 #include "app/gui/toolkit/words.h"
 #include "core/error.h"
-#include "geometry/io/mesh_in_unit.h"
+#include "geometry/io/mesh_io.h"
 #include "session/open/mesh_export.h"
 #include "session/open/scene_export.h"
 #include "workspace/workspace.h"

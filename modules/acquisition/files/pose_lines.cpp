@@ -42,7 +42,7 @@ bool startsWithName(std::string_view text) {
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first == std::string_view::npos) return false;
     text.remove_prefix(first);
-    if (text.front() != '#') break;
+    if (text.front() != '#' && text.front() != '%') break;
     text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
   }
   const std::string_view word = text.substr(0, text.find_first_of(" \t,;"));
@@ -123,7 +123,7 @@ OnFile<CameraPose> parsePoses(const std::string& whole, const std::string& name,
         while (!doubt.empty() && doubt.back() == '\r') doubt.pop_back();
         warnings->push_back(name + ": of the rig's markers: " + doubt);
       }
-      std::istringstream words{std::string(line.substr(0, line.find('#')))};
+      std::istringstream words{std::string(line.substr(0, line.find_first_of("#%")))};
       const std::vector<std::string> word{std::istream_iterator<std::string>(words), {}};
       if (word.empty()) continue;
       if (word.size() != 8 && word.size() != kColumns.size())

@@ -131,7 +131,8 @@ bool ProbeLines::isHeader(std::string_view line) {
     header_ = line;
     return true;
   }
-  if (joined_ && begin != std::string_view::npos && !named && line[begin] != '#') {
+  if (joined_ && begin != std::string_view::npos && !named && line[begin] != '#' &&
+      line[begin] != '%') {
     table_.assumeHeader(line);
     header_ = probeHeader(table_.has(kRateColumns[0]));
     header_.pop_back(); // its line end

@@ -29,7 +29,7 @@ struct PoseSigmas {
   double angle = 4.7e-3;    // about each axis [rad]
 };
 
-// TUM format: t tx ty tz qx qy qz qw in seconds and metres, one pose per line; '#' begins a
+// TUM format: t tx ty tz qx qy qz qw in seconds and metres, one pose per line; '#' or '%' begins a
 // comment. Two more numbers are the deviations of the position [m] and the angle [rad]. A table
 // with the header t [s],tx [m],ty [m],tz [m],qx,qy,qz,qw and optionally sigma [m],sigma_angle [rad]
 // is read too.

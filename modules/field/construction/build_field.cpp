@@ -42,9 +42,10 @@ TriangleMesh onlyFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>
 }
 
 // Returns `faces` without the entries at the indices `dropped`, which ascend.
-std::vector<std::int32_t> without(const std::vector<std::int32_t>& faces,
-                                  const std::vector<std::int32_t>& dropped) {
-  std::vector<std::int32_t> left;
+template <class Face>
+std::vector<Face> without(const std::vector<Face>& faces,
+                          const std::vector<std::int32_t>& dropped) {
+  std::vector<Face> left;
   left.reserve(faces.size() - dropped.size());
   auto next = dropped.begin();
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -112,25 +113,27 @@ BuiltField build(const TriangleMesh& mesh, const GridFor& grid_for, double band,
   report.dropped_triangles = mesh.triangles.size() - usable.size();
   std::optional<TriangleMesh> reduced;
   if (report.dropped_triangles > 0) reduced = onlyFaces(mesh, usable);
-  if (const auto inner = innerFaces(reduced ? *reduced : mesh); !inner.empty()) {
+  std::vector<Triangle> welded = weldedTriangles(reduced ? *reduced : mesh);
+  if (const auto inner = innerFaces(reduced ? *reduced : mesh, welded); !inner.empty()) {
     report.inner_triangles = inner.size();
     usable = without(usable, inner);
+    welded = without(welded, inner);
     reduced = onlyFaces(mesh, usable);
   }
   const TriangleMesh& sound = reduced ? *reduced : mesh;
 
   FieldGrid grid = grid_for(bounds(sound));
   std::optional<TriangleMesh> turned;
-  if (const auto wrong = misorientedTriangles(sound); !wrong.empty()) {
+  if (const auto wrong = misorientedTriangles(sound, welded); !wrong.empty()) {
     turned = sound;
-    for (const std::int32_t f : wrong) {
-      Triangle& t = turned->triangles[static_cast<std::size_t>(f)];
-      std::swap(t[1], t[2]);
-    }
+    for (const std::int32_t f : wrong)
+      for (auto* triangles : {&turned->triangles, &welded})
+        std::swap((*triangles)[index(f)][1], (*triangles)[index(f)][2]);
   }
   const TriangleMesh& oriented = turned ? *turned : sound;
   WindingNumber winding(oriented);
-  OpenParts open = openParts(oriented, winding, sides, grid.voxel);
+  OpenParts open = openParts(oriented, welded, winding, sides, grid.voxel);
+  welded = {};
   if (open.any()) winding = WindingNumber(closedPart(oriented, open));
   report.open_parts = open.parts;
   report.open_triangles = open.triangles;

@@ -12,9 +12,11 @@ namespace {
 constexpr std::array<std::size_t, 3> kStride{1, kBlockSide, kBlockSide* kBlockSide};
 constexpr std::uint16_t kUnlabelled = 0xFFFF;
 
-bool safe(float d1, float d2) {
-  return d1 + d2 > 1 + kMargin;
-}
+// Edges between nodes at such distances connect them.
+struct SafeEdge {
+  float margin;
+  bool operator()(float d1, float d2) const { return d1 + d2 > 1 + margin; }
+};
 
 std::uint16_t rootOf(Labels& parent, std::uint16_t label) {
   while (parent[label] != label) label = parent[label] = parent[parent[label]];
@@ -22,7 +24,7 @@ std::uint16_t rootOf(Labels& parent, std::uint16_t label) {
 }
 
 // Labels the nodes in two passes: with equivalences, then without.
-void labelNodes(const float* d, Labels& label, std::vector<Part>& parts) {
+void labelNodes(const float* d, SafeEdge safe, Labels& label, std::vector<Part>& parts) {
   Labels parent;
   std::uint16_t count = 0;
   std::size_t i = 0;
@@ -62,7 +64,7 @@ struct BlockParts {
   std::unique_ptr<Labels> labels;
 };
 
-BlockParts partsOfBlock(const float* d, std::int32_t slot, float most) {
+BlockParts partsOfBlock(const float* d, SafeEdge safe, std::int32_t slot, float most) {
   BlockParts block;
   float nearest = d[0];
   for (std::size_t i = 1; i < kBlockNodes; ++i) nearest = d[i] < nearest ? d[i] : nearest;
@@ -70,7 +72,7 @@ BlockParts partsOfBlock(const float* d, std::int32_t slot, float most) {
     block.parts.emplace_back();
   } else {
     block.labels = std::make_unique<Labels>();
-    labelNodes(d, *block.labels, block.parts);
+    labelNodes(d, safe, *block.labels, block.parts);
     if (block.parts.size() == 1) block.labels.reset();
   }
   for (Part& part : block.parts) {
@@ -100,6 +102,7 @@ void addEdge(std::vector<Link>& links, std::size_t since, std::uint32_t a, std::
 struct Linker {
   const FieldBuilder& builder;
   const Components& components;
+  SafeEdge safe;
 
   // Returns -1 outside the grid.
   std::ptrdiff_t topIndex(const std::array<int, 3>& at) const {
@@ -193,13 +196,14 @@ std::vector<std::uint32_t> rootsOf(const Linker& linker) {
 
 } // namespace
 
-Components connectedComponents(const FieldBuilder& builder) {
+Components connectedComponents(const FieldBuilder& builder, float margin) {
+  const SafeEdge safe{margin};
   const std::size_t slots = builder.distance.size();
   const auto most = static_cast<float>(builder.field.band) + 1;
   std::vector<BlockParts> blocks(slots);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slots, 16), [&](const auto& range) {
     for (std::size_t s = range.begin(); s < range.end(); ++s)
-      blocks[s] = partsOfBlock(phiOf(builder, s).data(), static_cast<std::int32_t>(s), most);
+      blocks[s] = partsOfBlock(phiOf(builder, s).data(), safe, static_cast<std::int32_t>(s), most);
   });
 
   Components components;
@@ -214,7 +218,7 @@ Components connectedComponents(const FieldBuilder& builder) {
   components.first.push_back(static_cast<std::uint32_t>(components.parts.size()));
   components.parts.resize(components.parts.size() + builder.field.block_index.size());
 
-  const Linker linker{builder, components};
+  const Linker linker{builder, components, safe};
   collectLinks(slots, components.links, [&](std::size_t s, std::vector<Link>& links) {
     linker.linkStored(static_cast<std::int32_t>(s), links);
   });
@@ -223,7 +227,7 @@ Components connectedComponents(const FieldBuilder& builder) {
 }
 
 void linkUnstored(const FieldBuilder& builder, Components& components) {
-  const Linker linker{builder, components};
+  const Linker linker{builder, components, {kMargin}};
   for (std::size_t i = 0; i < builder.field.block_index.size(); ++i)
     if (builder.field.block_index[i] < 0)
       linker.besideUnstored(i, [&](std::size_t other) {

@@ -46,7 +46,7 @@ struct Components {
   }
 };
 
-Components connectedComponents(const FieldBuilder& builder);
+Components connectedComponents(const FieldBuilder& builder, float margin = kMargin);
 // Links unstored blocks: by far the most links (36 bytes per block), needed only for leaks.
 void linkUnstored(const FieldBuilder& builder, Components& components);
 

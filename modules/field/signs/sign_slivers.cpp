@@ -6,39 +6,23 @@
 #include "field/signs/sign_components.h"
 
 namespace patina::signs {
-namespace {
-
-// Distances of the blocks about one node, each unpacked once.
-class NearbyBlocks {
- public:
-  explicit NearbyBlocks(const FieldBuilder& builder) : builder_(builder) {}
-  float distanceAt(std::int32_t slot, std::size_t node) {
-    std::size_t i = 0;
-    while (i < count_ && slots_[i] != slot) ++i;
-    if (i == count_) {
-      slots_[count_] = slot;
-      phi_[count_++] = phiOf(builder_, static_cast<std::size_t>(slot));
-    }
-    return std::abs(phi_[i][node]);
+float NearbyBlocks::distanceAt(std::int32_t slot, std::size_t node) {
+  std::size_t i = 0;
+  while (i < count_ && slots_[i] != slot) ++i;
+  if (i == count_) {
+    i = count_ < slots_.size() ? count_++ : next_++ % slots_.size();
+    slots_[i] = slot;
+    phi_[i] = phiOf(builder_, static_cast<std::size_t>(slot));
   }
-
- private:
-  const FieldBuilder& builder_;
-  std::array<std::int32_t, 8> slots_; // A node and its neighbours lie in at most eight blocks.
-  std::array<std::array<float, kBlockNodes>, 8> phi_;
-  std::size_t count_ = 0;
-};
-
-} // namespace
+  return std::abs(phi_[i][node]);
+}
 
 std::array<int, 3> nodeAt(const FieldBuilder& builder, std::int32_t slot, std::size_t node) {
   return BlockNode{builder.field.block_at[static_cast<std::size_t>(slot)], node}.at();
 }
 
-bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, std::int32_t slot,
-                       std::size_t node, NodePlace& found) {
-  // Exceeds the errors of both distances. Cracks need no more, since a sliver joins nothing else.
-  constexpr float kExact = 1e-3F;
+bool visibleDeeperNode(NearbyBlocks& blocks, const TriangleTree& tree, std::int32_t slot,
+                       std::size_t node, NodePlace& found, float gap) {
   struct Candidate {
     NodePlace place;
     std::array<int, 3> step;
@@ -46,8 +30,8 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
   };
   std::array<Candidate, 26> candidates;
   std::size_t count = 0;
+  const FieldBuilder& builder = blocks.builder();
   const SurfaceField& field = builder.field;
-  NearbyBlocks blocks(builder);
   const float depth = blocks.distanceAt(slot, node);
   const std::array<int, 3> at = nodeAt(builder, slot, node);
   for (int dz = -1; dz <= 1; ++dz) {
@@ -69,7 +53,7 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
         constexpr std::array<float, 4> kLength{0, 1, 1.41421356F, 1.73205081F};
         const float margin =
             depth + d - kLength[static_cast<std::size_t>(dx * dx + dy * dy + dz * dz)];
-        if (margin > kExact) {
+        if (margin > gap) {
           found = place;
           return true;
         }
@@ -86,6 +70,10 @@ bool visibleDeeperNode(const FieldBuilder& builder, const TriangleTree& tree, st
         left, candidates.begin() + static_cast<std::ptrdiff_t>(count),
         [](const Candidate& a, const Candidate& b) { return a.margin < b.margin; });
     std::swap(*left, *best);
+    if (left->margin > kExact) {
+      found = left->place;
+      return true;
+    }
     const Vec3 step(left->step[0], left->step[1], left->step[2]);
     if (tree.firstHit(origin, step, step.norm() * field.grid.voxel)) continue;
     found = left->place;

@@ -36,12 +36,10 @@ class Signer {
   Signer(FieldBuilder& builder, const TriangleMesh& mesh, const TriangleTree& tree,
          const WindingNumber& winding, const OpenParts& open, Progress& progress)
       : builder_(builder), mesh_(mesh), tree_(tree), winding_(winding), open_(open),
-        progress_(progress),
-        loose_(std::any_of(open.decided.begin(), open.decided.end(),
-                           [](const PartSides& part) { return part.joined; })) {}
+        progress_(progress), gap_(static_cast<float>(open.gap / builder.field.grid.voxel)) {}
 
   std::size_t run() {
-    parts_ = signs::connectedComponents(builder_);
+    parts_ = signs::connectedComponents(builder_, signs::kMargin + gap_);
     sign_.assign(parts_.parts.size(), 0);
     vote_.assign(parts_.parts.size(), kUnknownVote);
     depth_.assign(parts_.parts.size(), 0);
@@ -80,7 +78,7 @@ class Signer {
   bool reachesDeep(std::size_t part) const {
     constexpr float kLeast = 0.5F; // [voxel]
     const float depth = parts_.parts[part].depth;
-    return 2 * depth >= depth_[parts_.root[part]] || (loose_ && depth >= kLeast);
+    return 2 * depth >= depth_[parts_.root[part]] || (gap_ > 0 && depth >= kLeast);
   }
   bool isStored(std::size_t part) const { return parts_.parts[part].slot >= 0; }
 
@@ -247,11 +245,12 @@ class Signer {
   void signSlivers() {
     std::vector<Sliver> all = slivers();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), 64), [&](const auto& range) {
+      signs::NearbyBlocks blocks(builder_);
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
         const Part& part = parts_.parts[all[i].deepest];
-        all[i].has_visible_node =
-            part.depth > kOnSurface &&
-            signs::visibleDeeperNode(builder_, tree_, part.slot, part.deepest, all[i].seen);
+        all[i].has_visible_node = part.depth > kOnSurface &&
+                                  signs::visibleDeeperNode(blocks, tree_, part.slot, part.deepest,
+                                                           all[i].seen, signs::kExact + gap_);
       }
     });
     progress_.throwIfCancelled();
@@ -270,24 +269,25 @@ class Signer {
       if (isSliver(i)) sign_[i] = sign_[parts_.root[i]];
   }
 
-  // Returns the side of the nearest face at the deepest node: > 0 in front of it, 0 unless the
-  // nearest point is in the face's interior.
-  double sideOfNearest(const Part& part) const {
+  // Returns the side of the nearest face at the deepest node: > 0 in front of it, 0 if it has the
+  // sign of `wanted` or the nearest point is not in the face's interior.
+  double sideOfNearest(const Part& part, double wanted = 0) const {
     const std::int32_t face = builder_.face[static_cast<std::size_t>(part.slot)]->at(part.deepest);
     if (face < 0) return 0;
     const auto f = static_cast<std::size_t>(face);
     if (open_.any() && open_.open[f]) return 0;
     const Vec3 a = mesh_.corner(f, 0), b = mesh_.corner(f, 1), c = mesh_.corner(f, 2);
     const Vec3 p = world(part.slot, part.deepest);
-    const Vec3 w = closestBarycentric(p, a, b, c);
-    return w.minCoeff() < 1e-3 ? 0 : (b - a).cross(c - a).dot(p - a);
+    const double side = (b - a).cross(c - a).dot(p - a);
+    return side * wanted > 0 || closestBarycentric(p, a, b, c).minCoeff() < 1e-3 ? 0 : side;
   }
 
   // Returns true if the nearest face has the other sign.
   bool conflictsWithFace(const Sliver& sliver, std::int8_t sign) const {
     const Part& part = parts_.parts[sliver.deepest];
     if (outward_balance_ == 0 || part.depth < 1e-2F) return false;
-    return sideOfNearest(part) * (outward_balance_ > 0 ? 1 : -1) * sign < 0;
+    const int wanted = (outward_balance_ > 0 ? 1 : -1) * sign;
+    return sideOfNearest(part, wanted) != 0;
   }
 
   void write() {
@@ -319,7 +319,9 @@ class Signer {
   const WindingNumber& winding_;
   const OpenParts& open_;
   Progress& progress_;
-  const bool loose_; // some part consists of loose pieces
+  // Width of the gaps between loose pieces [voxel], 0 without such. The nodes of an edge through a
+  // gap are no farther from the surface in sum than its length and this.
+  const float gap_;
   Components parts_;
   std::vector<float> depth_;             // depth of each component, at its root
   std::vector<float> vote_;              // winding number at each part's deepest node

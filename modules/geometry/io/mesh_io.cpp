@@ -6,7 +6,6 @@
 #include "core/file.h"
 #include "core/file_kind.h"
 #include "geometry/io/commented_file.h"
-#include "geometry/io/mesh_file_type.h"
 
 namespace patina {
 namespace {

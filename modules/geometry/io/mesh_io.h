@@ -7,9 +7,18 @@
 #include <vector>
 
 #include "geometry/mesh/mesh_colors.h"
+#include "geometry/mesh/mesh_unit.h"
 #include "geometry/mesh/triangle_mesh.h"
 
 namespace patina {
+
+enum class MeshFileType { obj, ply, stl };
+
+// Returns the format by extension, in any case. Throws FileError naming the choices. A stream ("-"
+// or a path below /dev) has no extension: PLY is written to it.
+MeshFileType meshFileType(const std::filesystem::path& path);
+// The same for reading `bytes`; the format of a stream follows from its content.
+MeshFileType meshFileType(const std::filesystem::path& path, std::string_view bytes);
 
 // Reads a mesh by extension (.obj .ply .stl, any case), or a stream ("-", /dev/fd/3) by content.
 // Coordinates are returned in the file's own unit, as doubles. Throws FileError with the line, or
@@ -46,6 +55,8 @@ TriangleMesh parseStl(std::string_view bytes, const std::string& name,
 // Writes by extension, or PLY to a stream; PLY and STL are binary. Atomic. PLY stores doubles and
 // OBJ the shortest text, so both read back bit for bit; STL stores floats and no texture.
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+// The same for a mesh in metres with the file's numbers in `unit`, which is not MeshUnit::fit.
+void writeMeshIn(const std::filesystem::path& path, TriangleMesh mesh, MeshUnit unit);
 std::string plyBytes(const TriangleMesh& mesh); // PLY as written by writeMesh()
 
 } // namespace patina

@@ -4,8 +4,6 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "geometry/io/mesh_file_type.h"
-#include "geometry/io/mesh_in_unit.h"
 #include "geometry/io/textured_obj.h"
 #include "geometry/mesh/vertex_weld.h"
 

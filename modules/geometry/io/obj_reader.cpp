@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "geometry/io/commented_file.h"
-#include "geometry/io/mesh_file_type.h"
 #include "geometry/io/obj_materials.h"
 #include "geometry/io/text_scan.h"
 #include "geometry/io/textured_obj.h"

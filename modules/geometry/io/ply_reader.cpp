@@ -23,26 +23,24 @@ namespace {
 enum class PlyFormat { ascii, little_endian, big_endian };
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-inline bool isInteger(PlyType type) {
-  return type != PlyType::float32 && type != PlyType::float64;
-}
+struct PlyTypeNames {
+  const char *name, *sized_name;
+  std::size_t bytes;
+};
+constexpr std::array<PlyTypeNames, 8> kTypes = {{{"char", "int8", 1}, // index: PlyType
+                                                 {"uchar", "uint8", 1},
+                                                 {"short", "int16", 2},
+                                                 {"ushort", "uint16", 2},
+                                                 {"int", "int32", 4},
+                                                 {"uint", "uint32", 4},
+                                                 {"float", "float32", 4},
+                                                 {"double", "float64", 8}}};
 
 std::size_t bytes(PlyType type) {
-  switch (type) {
-  case PlyType::int8:
-  case PlyType::uint8:
-    return 1;
-  case PlyType::int16:
-  case PlyType::uint16:
-    return 2;
-  case PlyType::int32:
-  case PlyType::uint32:
-  case PlyType::float32:
-    return 4;
-  case PlyType::float64:
-    break;
-  }
-  return 8;
+  return kTypes[static_cast<std::size_t>(type)].bytes;
+}
+bool isInteger(PlyType type) {
+  return type < PlyType::float32;
 }
 
 struct PlyProperty {
@@ -67,27 +65,8 @@ struct PlyHeader {
   std::size_t body_byte = 0;         // offset of the body in the file
 };
 
-struct TypeName {
-  const char* name;
-  PlyType type;
-};
-constexpr std::array<TypeName, 16> kTypeNames = {{{"char", PlyType::int8},
-                                                  {"int8", PlyType::int8},
-                                                  {"uchar", PlyType::uint8},
-                                                  {"uint8", PlyType::uint8},
-                                                  {"short", PlyType::int16},
-                                                  {"int16", PlyType::int16},
-                                                  {"ushort", PlyType::uint16},
-                                                  {"uint16", PlyType::uint16},
-                                                  {"int", PlyType::int32},
-                                                  {"int32", PlyType::int32},
-                                                  {"uint", PlyType::uint32},
-                                                  {"uint32", PlyType::uint32},
-                                                  {"float", PlyType::float32},
-                                                  {"float32", PlyType::float32},
-                                                  {"double", PlyType::float64},
-                                                  {"float64", PlyType::float64}}};
-
+// Throws FileError. An element's count never exceeds what the body can hold, so that memory may be
+// reserved by it.
 class HeaderParser {
  public:
   HeaderParser(std::string_view bytes, const std::string& name)
@@ -186,8 +165,8 @@ class HeaderParser {
   }
 
   PlyType type(std::string_view word) const {
-    for (const TypeName& known : kTypeNames)
-      if (word == known.name) return known.type;
+    for (std::size_t i = 0; i < kTypes.size(); ++i)
+      if (word == kTypes[i].name || word == kTypes[i].sized_name) return static_cast<PlyType>(i);
     fail("type " + quotedOrBinary(word) + " is unknown");
   }
 
@@ -212,12 +191,6 @@ class HeaderParser {
   text::Lines lines_;
   PlyHeader header_;
 };
-
-// Throws FileError. An element's count never exceeds what the body can hold, so that memory may be
-// reserved by it.
-PlyHeader parsePlyHeader(std::string_view bytes, const std::string& name) {
-  return HeaderParser(bytes, name).parse();
-}
 
 // The body of an ascii or binary PLY file as a stream of numbers: beginItem, value, length and
 // endItem for each item, and end.
@@ -687,7 +660,7 @@ template <typename Source> class PlyParser {
 
 TriangleMesh parsePly(std::string_view bytes, const std::string& name,
                       std::vector<std::string>* warnings, MeshColors* colors) {
-  const PlyHeader header = parsePlyHeader(bytes, name);
+  const PlyHeader header = HeaderParser(bytes, name).parse();
   if (header.format == PlyFormat::ascii)
     return PlyParser<PlyAsciiSource>(header, name, warnings, colors).parse();
   if (header.format == PlyFormat::little_endian)

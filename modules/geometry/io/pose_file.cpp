@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/utf8.h"
+#include "geometry/io/text_scan.h"
 
 namespace patina {
 namespace {
@@ -52,27 +52,26 @@ std::string poseText(const Pose& pose, const std::string& frames) {
 
 Pose parsePose(const std::string& whole, const std::string& name) {
   constexpr std::size_t kNumbers = 16;
-  std::istringstream text{std::string(withoutByteOrderMark(whole))};
+  text::Lines lines(withoutByteOrderMark(whole));
   std::vector<double> values;
   std::vector<std::size_t> line_of;
-  std::size_t line_number = 0;
   const auto refuse = [&](std::size_t line, const std::string& cause) {
     throw FileError(name, line, cause);
   };
-  for (std::string line; std::getline(text, line);) {
-    ++line_number;
-    std::istringstream words(line.substr(0, line.find('#')));
-    for (std::string word; words >> word;) {
+  for (std::string_view line; lines.next(line);) {
+    text::Words words(line.substr(0, line.find('#')));
+    for (auto word = words.next(); !word.empty(); word = words.next()) {
       const std::optional<double> value = parseNumber(word);
-      if (!value || !std::isfinite(*value)) refuse(line_number, "'" + word + "' is not a number");
+      if (!value || !std::isfinite(*value))
+        refuse(lines.number(), text::quoted(word) + " is not a number");
       if (values.size() == kNumbers)
-        refuse(line_number, "a pose ends after 4 x 4 numbers; here is one more");
+        refuse(lines.number(), "a pose ends after 4 x 4 numbers; here is one more");
       values.push_back(*value);
-      line_of.push_back(line_number);
+      line_of.push_back(lines.number());
     }
   }
   if (values.size() != kNumbers)
-    refuse(line_number,
+    refuse(lines.number(),
            "the file ends after " + std::to_string(values.size()) + " numbers; a pose has 4 x 4");
   const Eigen::Matrix4d pose = Eigen::Map<const Eigen::Matrix4d>(values.data()).transpose();
   if (const auto fault = faultOf(pose))

@@ -1,4 +1,4 @@
-#include <bit>
+#include <cstring>
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/text_scan.h"
@@ -13,12 +13,9 @@ constexpr std::size_t kRecord = 50;       // normal, three corners (floats), two
 constexpr std::uint32_t kUnknownCount = 0xffffffff; // written by programs that cannot seek
 
 template <typename T> T littleEndian(const char* at) {
-  static_assert(sizeof(T) == 4);
-  const auto* b = reinterpret_cast<const unsigned char*>(at);
-  const std::uint32_t bits =
-      static_cast<std::uint32_t>(b[0]) | static_cast<std::uint32_t>(b[1]) << 8 |
-      static_cast<std::uint32_t>(b[2]) << 16 | static_cast<std::uint32_t>(b[3]) << 24;
-  return std::bit_cast<T>(bits);
+  T value;
+  std::memcpy(&value, at, sizeof value); // Supported processors are little-endian.
+  return value;
 }
 
 std::uint64_t binarySize(std::string_view bytes) {

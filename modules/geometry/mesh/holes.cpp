@@ -23,10 +23,11 @@ constexpr std::size_t kSmallPiece = 4;                    // faces
 constexpr double kJoinedRim = 0.5, kJoinedSmallRim = 0.3; // fractions of a boundary's length
 
 // Marks boundary edges that match those of other pieces, joins such pieces and returns their former
-// roots.
+// roots. `gap` becomes the largest distance across which pieces are joined [m].
 std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
                                         const std::vector<std::size_t>& faces_of, double reach,
-                                        std::vector<RimEdge>& rims, DisjointSets& pieces) {
+                                        std::vector<RimEdge>& rims, DisjointSets& pieces,
+                                        double& gap) {
   std::vector<Vec3> middles;
   middles.reserve(rims.size());
   for (const RimEdge& rim : rims)
@@ -35,40 +36,47 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
   const double far = kNear * reach;
   const PointGrid grid(middles, far);
   struct Place {
-    std::array<std::int32_t, 2> vertices;
+    std::array<Vec3, 2> ends;
     std::int32_t root;          // root of its piece
     std::int32_t covering = -1; // matching edge of another piece
     double length;
     bool joined = false;
   };
-  const auto squareOf = [&](std::int32_t v, std::int32_t w) {
-    return (positions[index(v)] - positions[index(w)]).squaredNorm();
+  // Larger distance between the ends of edges that run in opposite directions.
+  const auto squareBetween = [](const Place& a, const Place& b) {
+    return std::max((a.ends[0] - b.ends[1]).squaredNorm(), (a.ends[1] - b.ends[0]).squaredNorm());
   };
   std::vector<Place> places(rims.size()); // in the grid's order
   std::vector<double> whole(faces_of.size()), shared(faces_of.size());
   for (std::size_t n = 0; n < places.size(); ++n) {
     const RimEdge& rim = rims[grid.point(n)];
     Place& at = places[n];
-    at.vertices = rim.vertices;
-    at.length = std::sqrt(squareOf(at.vertices[0], at.vertices[1]));
+    at.ends = {positions[index(rim.vertices[0])], positions[index(rim.vertices[1])]};
+    at.length = (at.ends[0] - at.ends[1]).norm();
     at.root = pieces.find(rim.face);
     whole[index(at.root)] += at.length;
   }
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.size(), 4096), [&](const auto& part) {
     for (std::size_t n = part.begin(); n < part.end(); ++n) {
       Place& at = places[n];
-      grid.forEachNear(n, far, [&](std::size_t m) {
+      const auto limitOf = [&](double length) {
+        return std::clamp(kSeam * length, kMinSeam * reach, far);
+      };
+      // The middles of matching edges are no farther apart than their ends.
+      grid.forEachNear(n, std::min(far, limitOf(at.length) * (1 + 1e-9)), [&](std::size_t m) {
         const Place& other = places[m];
         if (other.root == at.root) return false;
         at.joined = true;
-        const double limit =
-            std::clamp(kSeam * std::min(at.length, other.length), kMinSeam * reach, far);
-        if (squareOf(at.vertices[0], other.vertices[1]) > limit * limit ||
-            squareOf(at.vertices[1], other.vertices[0]) > limit * limit)
-          return false;
+        const double limit = limitOf(std::min(at.length, other.length));
+        if (squareBetween(at, other) > limit * limit) return false;
         at.covering = static_cast<std::int32_t>(m);
         return true;
       });
+      if (!at.joined)
+        grid.forEachNear(n, far, [&](std::size_t m) {
+          at.joined = places[m].root != at.root;
+          return at.joined;
+        });
     }
   });
   for (const Place& at : places)
@@ -83,18 +91,26 @@ std::vector<std::int32_t> joinAlongRims(const std::vector<Vec3>& positions,
     rim.covered = at.joined && at.covering >= 0;
   }
   // Joins the piece to that of the matching edge, or else to all pieces nearby.
+  const auto isMatched = [&](const Place& at) {
+    return at.covering >= 0 && places[index(at.covering)].joined;
+  };
+  double square = 0;
   for (std::size_t n = 0; n < places.size(); ++n) {
     const Place& at = places[n];
     if (!at.joined) continue;
-    if (at.covering >= 0 && places[index(at.covering)].joined)
+    if (isMatched(at)) {
       pieces.join(at.root, places[index(at.covering)].root);
-    else
-      grid.forEachNear(n, far, [&](std::size_t m) {
-        const bool asks_too = m > n && places[m].covering < 0;
-        if (places[m].joined && !asks_too) pieces.join(at.root, places[m].root);
-        return false;
-      });
+      square = std::max(square, squareBetween(at, places[index(at.covering)]));
+      continue;
+    }
+    square = far * far;
+    grid.forEachNear(n, far, [&](std::size_t m) {
+      const bool asks_too = m > n && places[m].covering < 0;
+      if (places[m].joined && !asks_too) pieces.join(at.root, places[m].root);
+      return false;
+    });
   }
+  gap = std::sqrt(square);
   std::vector<std::int32_t> joined;
   for (const Place& at : places)
     if (pieces.find(at.root) != at.root) joined.push_back(at.root);
@@ -110,14 +126,14 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
   DisjointSets pieces(triangles.size());
   std::vector<std::int32_t> crossed;
   const auto rises = [&](const EdgeUse& use) {
-    return triangles[index(use.face)][static_cast<std::size_t>(use.edge)] == use.low;
+    return triangles[index(use.face)][index(use.edge)] == use.low;
   };
   const auto runOf = [&](const EdgeUse& use) {
     return rises(use) ? std::array{use.low, use.high} : std::array{use.high, use.low};
   };
   forEachEdge(
-      triangles, first_of, [](std::size_t) { return true; },
-      [&](auto first, auto last) {
+      triangles, [&](std::size_t f) { return index(first_of[f]) == f; },
+      [&](const EdgeUse* first, const EdgeUse* last) {
         if (last - first == 1) found.rims.push_back({runOf(*first), first->face, first->edge});
         if (last - first == 2 && rises(first[0]) == rises(first[1])) crossed.push_back(first->face);
         for (auto use = first + 1; use != last; ++use) pieces.join(first->face, use->face);
@@ -126,7 +142,7 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach) {
   std::vector<std::size_t> faces_of(triangles.size()); // count per root
   for (std::size_t f = 0; f < triangles.size(); ++f) ++faces_of[index(pieces.find(first_of[f]))];
   if (reach > 0 && !triangles.empty() && faces_of[0] < triangles.size())
-    joined = joinAlongRims(mesh.positions, faces_of, reach, found.rims, pieces);
+    joined = joinAlongRims(mesh.positions, faces_of, reach, found.rims, pieces, found.gap);
 
   found.part_of.resize(triangles.size());
   std::vector<std::uint8_t> doubled; // part has duplicate faces
@@ -219,10 +235,12 @@ class LeastTriangulation {
 class Loops {
  public:
   Loops(std::size_t points, const std::vector<std::array<std::int32_t, 2>>& edges)
-      : edges_(edges), of_point_(points), used_(edges.size()), place_(points, kNowhere) {
-    for (std::size_t e = 0; e < edges.size(); ++e)
-      for (const std::int32_t p : edges[e]) of_point_[static_cast<std::size_t>(p)].push_back(e);
-  }
+      : edges_(edges), of_point_(points,
+                                 [&](const auto& visit) {
+                                   for (std::size_t e = 0; e < edges.size(); ++e)
+                                     for (const std::int32_t p : edges[e]) visit(p, e);
+                                 }),
+        used_(edges.size()), place_(points, kNowhere) {}
 
   template <class Visit> void run(const Visit& visit) {
     for (std::size_t e = 0; e < edges_.size(); ++e)
@@ -254,7 +272,7 @@ class Loops {
   }
 
   std::size_t step(std::size_t from) {
-    for (const std::size_t e : of_point_[from]) {
+    for (const std::size_t e : of_point_.at(from)) {
       if (used_[e]) continue;
       used_[e] = true;
       const auto a = static_cast<std::size_t>(edges_[e][0]);
@@ -264,7 +282,7 @@ class Loops {
   }
 
   const std::vector<std::array<std::int32_t, 2>>& edges_;
-  std::vector<std::vector<std::size_t>> of_point_; // edges at each point
+  ByVertex<std::size_t> of_point_; // edges at each point
   std::vector<bool> used_;
   std::vector<std::size_t> place_; // index of each point in the walk
 };

@@ -33,6 +33,7 @@ struct ConnectedParts {
   std::vector<ConnectedPart> parts;
   std::vector<std::int32_t> part_of; // part of each face
   std::vector<RimEdge> rims;
+  double gap = 0; // largest distance across which pieces are joined [m]
 };
 
 // Finds the parts of a welded mesh. A piece is a set of faces connected by edges. A boundary edge

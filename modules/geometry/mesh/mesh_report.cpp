@@ -9,14 +9,15 @@
 #include "core/error.h"
 #include "core/types.h"
 #include "geometry/mesh/disjoint_sets.h"
+#include "geometry/mesh/edge_uses.h"
 #include "geometry/mesh/point_grid.h"
 #include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 namespace {
 
-// Closes the cracks of a mesh for its report: corners at equal or nearly equal positions, and
-// corners on an edge.
+// Closes the cracks of a mesh for its report: corners at nearly equal positions, and corners on an
+// edge.
 
 // Edge with one face, in the direction of that face.
 struct BoundaryEdge {
@@ -49,27 +50,6 @@ std::vector<Vec3> pointsOf(const std::vector<Vec3>& positions,
   points.reserve(vertices.size());
   for (const std::int32_t v : vertices) points.push_back(positions[index(v)]);
   return points;
-}
-
-// Welds boundary vertices at equal positions.
-BorderWeld weldBorder(const std::vector<Vec3>& positions, const std::vector<BoundaryEdge>& border) {
-  BorderWeld result;
-  const std::vector<std::int32_t> vertices = verticesOf(border);
-  VertexWeld places(vertices.size());
-  std::vector<std::int32_t> first; // first vertex at each position
-  for (const std::int32_t v : vertices) {
-    const std::int32_t place = places.index(positions[index(v)]);
-    if (index(place) == first.size()) {
-      first.push_back(v);
-      continue;
-    }
-    if (result.vertex_of.empty()) {
-      result.vertex_of.resize(positions.size());
-      std::iota(result.vertex_of.begin(), result.vertex_of.end(), 0);
-    }
-    result.vertex_of[index(v)] = first[index(place)];
-  }
-  return result;
 }
 
 // Welds boundary vertices that are at most `tolerance` and a quarter of the shortest boundary edge
@@ -187,66 +167,6 @@ std::vector<Fault> triangleFaults(const TriangleMesh& mesh) {
   return faults;
 }
 
-// Items grouped by vertex in one array with offsets. Sorting each short run replaces a hash table
-// of all edges.
-template <typename Item> class ByVertex {
- public:
-  ByVertex(std::size_t vertices, std::size_t items) : ends_(vertices + 1, 0) {
-    items_.reserve(items);
-  }
-  void count(std::int32_t vertex) { ++ends_[static_cast<std::size_t>(vertex) + 1]; }
-  void startFilling() {
-    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
-    items_.resize(ends_.back());
-    next_.assign(ends_.begin(), ends_.end() - 1);
-  }
-  void file(std::int32_t vertex, const Item& item) {
-    items_[next_[static_cast<std::size_t>(vertex)]++] = item;
-  }
-  template <typename Visit> void forEachSortedRun(Visit visit) {
-    next_ = {};
-    for (std::size_t v = 0; v + 1 < ends_.size(); ++v) {
-      if (ends_[v] == ends_[v + 1]) continue;
-      Item* first = items_.data() + ends_[v];
-      Item* last = items_.data() + ends_[v + 1];
-      std::sort(first, last);
-      visit(static_cast<std::int32_t>(v), first, last);
-    }
-  }
-
- private:
-  std::vector<std::size_t> ends_;
-  std::vector<std::size_t> next_;
-  std::vector<Item> items_;
-};
-
-struct SameVertices {
-  std::int32_t middle, high, triangle;
-  auto operator<=>(const SameVertices&) const = default;
-};
-
-void markDuplicates(std::size_t vertices, const std::vector<Triangle>& triangles,
-                    std::vector<Fault>& faults) {
-  ByVertex<SameVertices> by_lowest(vertices, triangles.size());
-  const auto forEach = [&](auto visit) {
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      if (faults[t] != Fault::none) continue;
-      Triangle v = triangles[t];
-      std::sort(v.begin(), v.end());
-      visit(v, static_cast<std::int32_t>(t));
-    }
-  };
-  forEach([&](const Triangle& v, std::int32_t) { by_lowest.count(v[0]); });
-  by_lowest.startFilling();
-  forEach([&](const Triangle& v, std::int32_t t) { by_lowest.file(v[0], {v[1], v[2], t}); });
-  by_lowest.forEachSortedRun(
-      [&](std::int32_t, const SameVertices* first, const SameVertices* last) {
-        for (const SameVertices* item = first + 1; item < last; ++item)
-          if (item[-1].middle == item->middle && item[-1].high == item->high)
-            faults[static_cast<std::size_t>(item->triangle)] = Fault::duplicate;
-      });
-}
-
 struct DirectedUse {
   std::int32_t high;
   bool upwards; // the face runs from the lower to the higher vertex
@@ -254,18 +174,14 @@ struct DirectedUse {
 };
 
 // Adds to the report's counts; `border` receives the edges with one face.
-template <class ForEachEdge>
-void countEdges(std::size_t vertices, std::size_t edges, const ForEachEdge& forEachEdge,
-                MeshReport& report, std::vector<BoundaryEdge>& border) {
-  ByVertex<DirectedUse> by_lower(vertices, edges);
-  const auto forEach = [&](auto visit) {
-    forEachEdge([&](std::int32_t from, std::int32_t to) {
+template <class ForEach>
+void countEdges(std::size_t vertices, const ForEach& forEachOne, MeshReport& report,
+                std::vector<BoundaryEdge>& border) {
+  ByVertex<DirectedUse> by_lower(vertices, [&](const auto& visit) {
+    forEachOne([&](std::int32_t from, std::int32_t to) {
       visit(std::min(from, to), DirectedUse{std::max(from, to), from < to});
     });
-  };
-  forEach([&](std::int32_t low, const DirectedUse&) { by_lower.count(low); });
-  by_lower.startFilling();
-  forEach([&](std::int32_t low, const DirectedUse& use) { by_lower.file(low, use); });
+  });
   border.clear();
   by_lower.forEachSortedRun(
       [&](std::int32_t low, const DirectedUse* first, const DirectedUse* last) {
@@ -302,17 +218,19 @@ std::size_t countComponents(std::size_t vertices, const std::vector<Triangle>& t
   return components;
 }
 
-// Counts duplicates, components and edges; the triangles may use other vertex indices than the
-// mesh. Returns the edges with one face.
+// Counts duplicates, components and edges. Returns the edges with one face.
 std::vector<BoundaryEdge> countTopology(std::size_t vertices,
                                         const std::vector<Triangle>& triangles,
                                         std::vector<Fault>& faults, MeshReport& report) {
-  markDuplicates(vertices, triangles, faults);
+  const auto first_of =
+      firstDuplicates(triangles, [&](std::size_t t) { return faults[t] == Fault::none; });
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (index(first_of[t]) != t) faults[t] = Fault::duplicate;
   report.components = countComponents(vertices, triangles, faults);
   report.non_manifold_edges = report.misoriented_edges = 0;
   std::vector<BoundaryEdge> border;
   countEdges(
-      vertices, 3 * triangles.size(),
+      vertices,
       [&](auto visit) {
         for (std::size_t t = 0; t < triangles.size(); ++t) {
           if (faults[t] != Fault::none) continue;
@@ -324,20 +242,19 @@ std::vector<BoundaryEdge> countTopology(std::size_t vertices,
   return border;
 }
 
-// Closes cracks at the boundary and counts again: corners at equal positions, then corners within
-// the tolerance, then corners on an edge. The mesh itself does not change.
-void closeCracks(const TriangleMesh& mesh, std::vector<BoundaryEdge>& border,
-                 std::vector<Fault>& faults, MeshReport& report) {
+// Closes cracks at the boundary and counts again: corners within the tolerance, then corners on an
+// edge. The mesh itself does not change.
+void closeCracks(const TriangleMesh& mesh, std::vector<Triangle>& triangles,
+                 std::vector<BoundaryEdge>& border, std::vector<Fault>& faults,
+                 MeshReport& report) {
   Box3 box;
   for (std::size_t t = 0; t < faults.size(); ++t)
     for (int k = 0; k < 3 && faults[t] != Fault::non_finite; ++k) box.extend(mesh.corner(t, k));
   const double tolerance = kWeldTolerance * box.sizes().maxCoeff();
   if (!std::isfinite(tolerance)) return;
-  std::vector<Triangle> triangles;
-  const auto weld = [&](const BorderWeld& found) {
-    report.widest_crack = std::max(report.widest_crack, found.widest_crack);
-    if (found.vertex_of.empty()) return;
-    if (triangles.empty()) triangles = mesh.triangles;
+  const BorderWeld found = weldBorder(mesh.positions, border, tolerance);
+  report.widest_crack = found.widest_crack;
+  if (!found.vertex_of.empty()) {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       Triangle& v = triangles[t];
       for (std::int32_t& corner : v) corner = found.vertex_of[index(corner)];
@@ -345,15 +262,13 @@ void closeCracks(const TriangleMesh& mesh, std::vector<BoundaryEdge>& border,
       if (repeats && faults[t] == Fault::none) faults[t] = Fault::closed_up;
     }
     border = countTopology(mesh.positions.size(), triangles, faults, report);
-  };
-  weld(weldBorder(mesh.positions, border));
-  if (!border.empty()) weld(weldBorder(mesh.positions, border, tolerance));
+  }
   if (border.empty()) return;
   const SplitBorder split = splitBorder(mesh.positions, border, tolerance);
   if (split.edges.size() == border.size()) return;
   report.widest_crack = std::max(report.widest_crack, split.widest_crack);
   countEdges(
-      mesh.positions.size(), split.edges.size(),
+      mesh.positions.size(),
       [&](auto visit) {
         for (const BoundaryEdge& e : split.edges) visit(e.from, e.to);
       },
@@ -365,9 +280,9 @@ MeshReport inspect(const TriangleMesh& mesh, std::vector<Fault>& faults) {
   report.triangles = mesh.triangles.size();
   report.vertices = mesh.positions.size();
   faults = triangleFaults(mesh);
-  std::vector<BoundaryEdge> border =
-      countTopology(mesh.positions.size(), mesh.triangles, faults, report);
-  if (!border.empty()) closeCracks(mesh, border, faults, report);
+  std::vector<Triangle> welded = weldedTriangles(mesh);
+  std::vector<BoundaryEdge> border = countTopology(mesh.positions.size(), welded, faults, report);
+  if (!border.empty()) closeCracks(mesh, welded, border, faults, report);
   report.boundary_edges = border.size();
   const auto count = [&](Fault fault) {
     return static_cast<std::size_t>(std::count(faults.begin(), faults.end(), fault));

@@ -10,7 +10,8 @@
 namespace patina {
 
 // Fraction of the longest side of a mesh's bounds. Boundary corners no farther apart, and no
-// farther than a quarter of the shortest boundary edge at them, count as one in the report.
+// farther than a quarter of the shortest boundary edge at them, count as one in the report. Corners
+// at equal positions always do, so that it does not matter whether touching bodies share vertices.
 inline constexpr double kWeldTolerance = 1e-3;
 
 struct MeshReport {

@@ -33,6 +33,7 @@ class Parts {
   void join(std::int32_t f, std::int32_t g, bool opposed) {
     const Link a = find(f), b = find(g);
     const bool turned = (a.turned != b.turned) != opposed;
+    any_joined_ = true;
     if (a.root == b.root) {
       if (turned) one_sided_[index(a.root)] = 1;
       return;
@@ -43,51 +44,29 @@ class Parts {
     open_[index(low)] |= open_[index(high)];
   }
   void markOpen(std::int32_t face) { open_[index(find(face).root)] = 1; }
+  bool anyJoined() const { return any_joined_; }
   bool oneSided(std::int32_t root) const { return one_sided_[index(root)] != 0; }
   bool open(std::int32_t root) const { return open_[index(root)] != 0; }
 
  private:
   std::vector<Link> link_;
   std::vector<std::uint8_t> one_sided_, open_; // indexed by root
+  bool any_joined_ = false;
 };
 
-struct Use {
-  std::int32_t high, face;
-  bool upward; // the face runs from the edge's lower to its higher vertex
-};
-
-Parts connectedParts(const std::vector<Triangle>& triangles, std::size_t vertices) {
-  std::vector<std::uint32_t> offset(vertices + 1);
-  const auto forEdges = [&](const auto& visit) {
-    for (std::size_t f = 0; f < triangles.size(); ++f)
-      for (std::size_t k = 0; k < 3; ++k)
-        visit(static_cast<std::int32_t>(f), triangles[f][k], triangles[f][(k + 1) % 3]);
-  };
-  forEdges(
-      [&](std::int32_t, std::int32_t a, std::int32_t b) { ++offset[index(std::min(a, b)) + 1]; });
-  std::partial_sum(offset.begin(), offset.end(), offset.begin());
-  std::vector<Use> uses(offset.back());
-  std::vector<std::uint32_t> next(offset.begin(), offset.end() - 1);
-  forEdges([&](std::int32_t f, std::int32_t a, std::int32_t b) {
-    uses[next[index(std::min(a, b))]++] = {std::max(a, b), f, a < b};
-  });
+Parts connectedParts(const std::vector<Triangle>& triangles) {
   Parts parts(triangles.size());
-  for (std::size_t v = 0; v < vertices; ++v) {
-    const auto end = uses.begin() + offset[v + 1];
-    auto first = uses.begin() + offset[v];
-    std::sort(first, end, [](const Use& a, const Use& b) {
-      return a.high != b.high ? a.high < b.high : a.face < b.face;
-    });
-    while (first != end) {
-      auto last = first + 1;
-      while (last != end && last->high == first->high) ++last;
-      if (last - first == 2)
-        parts.join(first->face, first[1].face, first->upward == first[1].upward);
-      else
-        for (auto use = first; use != last; ++use) parts.markOpen(use->face);
-      first = last;
-    }
-  }
+  const auto rises = [&](const EdgeUse& use) {
+    return triangles[index(use.face)][index(use.edge)] == use.low;
+  };
+  forEachEdge(
+      triangles, [](std::size_t) { return true; },
+      [&](const EdgeUse* first, const EdgeUse* last) {
+        if (last - first == 2)
+          parts.join(first->face, first[1].face, rises(first[0]) == rises(first[1]));
+        else
+          for (auto use = first; use != last; ++use) parts.markOpen(use->face);
+      });
   return parts;
 }
 
@@ -123,8 +102,10 @@ void compareClosed(std::vector<TurnedPart*> closed) {
 
 } // namespace
 
-std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh) {
-  Parts links = connectedParts(weldedTriangles(mesh), mesh.positions.size());
+std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh,
+                                               const std::vector<Triangle>& welded) {
+  Parts links = connectedParts(welded);
+  if (!links.anyJoined()) return {}; // loose triangles
   const std::size_t faces = mesh.triangles.size();
   std::vector<Parts::Link> link(faces);
   std::vector<std::int32_t> part_of(faces, -1); // indexed by root

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/mesh/triangle_mesh.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 
@@ -13,7 +13,12 @@ namespace patina {
 //   it, the smaller area of each connected part giving way (one-sided parts stay as they are), and
 // - closed parts face the same way as most of the volume does. A part within the bounds of a larger
 //   closed one may be a cavity: it keeps facing as it does relative to that one.
-// A mesh that is turned inside out as a whole stays so. Corners must be finite.
-std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh);
+// A mesh that is turned inside out as a whole stays so. Corners must be finite. `welded`: the
+// weldedTriangles() of `mesh`.
+std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh,
+                                               const std::vector<Triangle>& welded);
+inline std::vector<std::int32_t> misorientedTriangles(const TriangleMesh& mesh) {
+  return misorientedTriangles(mesh, weldedTriangles(mesh));
+}
 
 } // namespace patina

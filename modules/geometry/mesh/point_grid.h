@@ -26,27 +26,23 @@ class PointGrid {
   // true. Looks at no more than 64 points per row, so that the time stays linear if many points
   // coincide. Any thread.
   template <class Visit> void forEachNear(std::size_t n, double reach, const Visit& visit) const {
-    const Vec3 at = placed_[n].at;
     const std::uint64_t cell = placed_[n].cell;
-    const double square = reach * reach;
-    const auto isLast = [&](std::size_t m) {
-      return (placed_[m].at - at).squaredNorm() <= square && visit(m);
-    };
-    const std::size_t least = n - std::min(n, kMaxMet / 2),
-                      most = std::min(placed_.size(), n + 1 + kMaxMet / 2);
+    const std::size_t most = std::min(placed_.size(), n + 1 + kMaxMet / 2);
     for (std::size_t m = n + 1; m < most && placed_[m].cell <= cell + 1; ++m)
-      if (isLast(m)) return;
-    for (std::size_t m = n; m > least && placed_[m - 1].cell + 1 >= cell; --m)
-      if (isLast(m - 1)) return;
-    for (const std::uint64_t z : {std::uint64_t{0}, stride_[2], 0 - stride_[2]})
-      for (const std::uint64_t y : {std::uint64_t{0}, stride_[1], 0 - stride_[1]}) {
-        if (z == 0 && y == 0) continue;
-        const std::uint64_t middle = cell + z + y;
-        const std::size_t begin = firstFrom(middle - 1);
-        const std::size_t end = std::min(placed_.size(), begin + kMaxMet);
-        for (std::size_t m = begin; m < end && placed_[m].cell <= middle + 1; ++m)
-          if (isLast(m)) return;
-      }
+      if (isNear(n, m, reach) && visit(m)) return;
+    if (visitBefore(n, reach, visit)) return;
+    const std::uint64_t y = stride_[1], z = stride_[2];
+    for (const std::uint64_t row : {y, z, z + y, z - y})
+      if (visitRow(n, cell + row, reach, visit)) return;
+  }
+
+  // Calls visit(n, m), m < n, for the pairs that forEachNear() finds for n.
+  template <class Visit> void forEachPair(double reach, const Visit& visit) const {
+    for (std::size_t n = 0; n < placed_.size(); ++n)
+      visitBefore(n, reach, [&](std::size_t m) {
+        visit(n, m);
+        return false;
+      });
   }
 
   // Calls visit(n) for the points in the cells that a box touches, at most 64 per row of cells.
@@ -69,6 +65,29 @@ class PointGrid {
     Vec3 at;
     std::uint32_t point;
   };
+
+  bool isNear(std::size_t n, std::size_t m, double reach) const {
+    return (placed_[m].at - placed_[n].at).squaredNorm() <= reach * reach;
+  }
+  // Visits the points of three cells of a row. Returns true once visit does.
+  template <class Visit>
+  bool visitRow(std::size_t n, std::uint64_t middle, double reach, const Visit& visit) const {
+    const std::size_t begin = firstFrom(middle - 1);
+    const std::size_t end = std::min(placed_.size(), begin + kMaxMet);
+    for (std::size_t m = begin; m < end && placed_[m].cell <= middle + 1; ++m)
+      if (isNear(n, m, reach) && visit(m)) return true;
+    return false;
+  }
+  // Visits the points before the n-th, those of its own row first.
+  template <class Visit> bool visitBefore(std::size_t n, double reach, const Visit& visit) const {
+    const std::uint64_t cell = placed_[n].cell, y = stride_[1], z = stride_[2];
+    const std::size_t least = n - std::min(n, kMaxMet / 2);
+    for (std::size_t m = n; m > least && placed_[m - 1].cell + 1 >= cell; --m)
+      if (isNear(n, m - 1, reach) && visit(m - 1)) return true;
+    for (const std::uint64_t row : {y, z + y, z, z - y})
+      if (visitRow(n, cell - row, reach, visit)) return true;
+    return false;
+  }
 
   // Returns the cell along each axis, as summands of its number.
   std::array<std::uint64_t, 3> cellOf(const Vec3& p) const {

@@ -1,11 +1,12 @@
-// Gives equal points one index by a hash of their bits.
+// Gives equal points one index by a hash of their bits, and so merges the vertices of a mesh.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
-#include "core/types.h"
+#include "geometry/mesh/triangle_mesh.h"
 
 namespace patina {
 
@@ -36,6 +37,15 @@ class VertexWeld {
     }
   }
 
+  static std::uint64_t hashOf(const Vec3& p) {
+    std::uint64_t hash = 0x9e3779b97f4a7c15u;
+    for (int k = 0; k < 3; ++k) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(p[k])) * 0xbf58476d1ce4e5b9u;
+      hash ^= hash >> 29;
+    }
+    return hash * 0x94d049bb133111ebu ^ hash >> 31;
+  }
+
   const std::vector<Vec3>& points() const { return points_; }
   std::vector<Vec3> takePoints() { return std::move(points_); }
 
@@ -51,14 +61,6 @@ class VertexWeld {
       same &= std::bit_cast<std::uint64_t>(a[k]) == std::bit_cast<std::uint64_t>(b[k]);
     return same;
   }
-  static std::uint64_t hashOf(const Vec3& p) {
-    std::uint64_t hash = 0x9e3779b97f4a7c15u;
-    for (int k = 0; k < 3; ++k) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(p[k])) * 0xbf58476d1ce4e5b9u;
-      hash ^= hash >> 29;
-    }
-    return hash * 0x94d049bb133111ebu ^ hash >> 31;
-  }
   void grow() {
     slots_.assign(2 * slots_.size(), Slot{});
     const std::size_t mask = slots_.size() - 1;
@@ -73,5 +75,38 @@ class VertexWeld {
   std::vector<Slot> slots_;
   std::vector<Vec3> points_;
 };
+
+// Returns the triangles of a mesh with the first vertex at each position for all that are there.
+inline std::vector<Triangle> weldedTriangles(const TriangleMesh& mesh) {
+  constexpr std::size_t kMost = std::size_t{1} << 28; // so that hashes have 32 bits
+  // Finds the hashes that occur more than once by bits that fit into the cache: most vertices of a
+  // sound mesh are known to be alone by these.
+  const std::size_t mask = std::bit_ceil(8 * std::min(mesh.positions.size(), kMost) + 64) - 1;
+  std::vector<std::uint64_t> once(mask / 64 + 1), twice(mask / 64 + 1);
+  const auto bitOf = [](std::size_t at) { return std::uint64_t{1} << at % 64; };
+  std::vector<std::uint32_t> hashes;
+  hashes.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) {
+    const std::size_t at = VertexWeld::hashOf(p.array() + 0.0) & mask;
+    twice[at / 64] |= once[at / 64] & bitOf(at);
+    once[at / 64] |= bitOf(at);
+    hashes.push_back(static_cast<std::uint32_t>(at));
+  }
+  VertexWeld weld(mesh.positions.size() / 16);
+  std::vector<std::int32_t> first, first_of; // first vertex of each point; of each vertex
+  first_of.reserve(mesh.positions.size());
+  for (const std::size_t at : hashes) {
+    const std::size_t v = first_of.size();
+    first_of.push_back(static_cast<std::int32_t>(v));
+    if (!(twice[at / 64] & bitOf(at))) continue;
+    const auto place = static_cast<std::size_t>(weld.index(mesh.positions[v]));
+    if (place == first.size()) first.push_back(first_of[v]);
+    first_of[v] = first[place];
+  }
+  std::vector<Triangle> triangles = mesh.triangles;
+  for (Triangle& t : triangles)
+    for (std::int32_t& v : t) v = first_of[static_cast<std::size_t>(v)];
+  return triangles;
+}
 
 } // namespace patina

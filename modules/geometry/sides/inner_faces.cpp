@@ -1,7 +1,6 @@
 #include "geometry/sides/inner_faces.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include <tbb/parallel_for.h>
@@ -15,34 +14,6 @@ namespace {
 
 constexpr double kInside = 0.75;
 
-Triangle sorted(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
-}
-
-// Returns true if a triangle occurs twice. Hashing is cheap for meshes without duplicates.
-bool hasPairs(const std::vector<Triangle>& triangles) {
-  struct Slot {
-    std::uint32_t tag = 0;
-    std::int32_t face = -1;
-  };
-  std::vector<Slot> slots(std::bit_ceil(2 * triangles.size() + 2));
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    const Triangle own = sorted(triangles[f]);
-    std::uint64_t hash = 0x9e3779b97f4a7c15u;
-    for (const std::int32_t v : own) {
-      hash = (hash ^ static_cast<std::uint64_t>(v)) * 0xbf58476d1ce4e5b9u;
-      hash ^= hash >> 29;
-    }
-    const auto tag = static_cast<std::uint32_t>(hash >> 32);
-    std::size_t at = hash & (slots.size() - 1);
-    for (; slots[at].face >= 0; at = (at + 1) & (slots.size() - 1))
-      if (slots[at].tag == tag && sorted(triangles[index(slots[at].face)]) == own) return true;
-    slots[at] = {tag, static_cast<std::int32_t>(f)};
-  }
-  return false;
-}
-
 TriangleMesh orientedFaces(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
   TriangleMesh only{mesh.positions, {}, {}};
   for (const std::int32_t f : faces) only.triangles.push_back(mesh.triangles[index(f)]);
@@ -53,14 +24,13 @@ TriangleMesh orientedFaces(const TriangleMesh& mesh, const std::vector<std::int3
 
 } // namespace
 
-std::vector<std::int32_t> innerFaces(const TriangleMesh& mesh) {
-  const std::vector<Triangle> triangles = weldedTriangles(mesh);
-  if (!hasPairs(triangles)) return {};
-  const std::vector<std::int32_t> first = firstDuplicates(triangles);
-  std::vector<std::int32_t> copies(triangles.size());
+std::vector<std::int32_t> innerFaces(const TriangleMesh& mesh,
+                                     const std::vector<Triangle>& welded) {
+  const std::vector<std::int32_t> first = firstDuplicates(welded);
+  std::vector<std::int32_t> copies(welded.size());
   for (const std::int32_t f : first) ++copies[index(f)];
   std::vector<std::int32_t> single, paired;
-  for (std::size_t f = 0; f < triangles.size(); ++f)
+  for (std::size_t f = 0; f < welded.size(); ++f)
     (copies[index(first[f])] == 2 ? paired : single).push_back(static_cast<std::int32_t>(f));
   if (single.empty() || paired.empty()) return {};
   const WindingNumber winding(orientedFaces(mesh, single));

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/mesh/triangle_mesh.h"
+#include "geometry/mesh/vertex_weld.h"
 
 namespace patina {
 
@@ -13,6 +13,10 @@ namespace patina {
 // faces between the cells of a tetrahedral mesh, or the wall between two touching bodies. A mesh in
 // which all triangles occur twice has none. Degenerate triangles must be left out, corners be
 // finite. Parallel, with the same result for any number of threads.
-std::vector<std::int32_t> innerFaces(const TriangleMesh& mesh);
+// `welded`: the weldedTriangles() of `mesh`.
+std::vector<std::int32_t> innerFaces(const TriangleMesh& mesh, const std::vector<Triangle>& welded);
+inline std::vector<std::int32_t> innerFaces(const TriangleMesh& mesh) {
+  return innerFaces(mesh, weldedTriangles(mesh));
+}
 
 } // namespace patina

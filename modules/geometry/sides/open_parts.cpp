@@ -182,11 +182,9 @@ std::vector<std::int32_t> nearVertices(const TriangleMesh& mesh, const Connected
   const double near = std::min(reach, 0.4 * length / static_cast<double>(rims.size()));
   const PointGrid grid(points, near);
   DisjointSets sets(mesh.positions.size());
-  for (std::size_t n = 0; n < grid.size(); ++n)
-    grid.forEachNear(n, near, [&](std::size_t m) {
-      if (m < n) sets.join(vertices[grid.point(n)], vertices[grid.point(m)]);
-      return false;
-    });
+  grid.forEachPair(near, [&](std::size_t n, std::size_t m) {
+    sets.join(vertices[grid.point(n)], vertices[grid.point(m)]);
+  });
   return std::move(sets).lowest();
 }
 
@@ -228,13 +226,13 @@ void dropLoopsOfChance(const WindingNumber& winding, std::vector<Hole>& holes) {
 
 } // namespace
 
-OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding, OpenSides sides,
-                    double reach) {
+OpenParts openParts(const TriangleMesh& mesh, const std::vector<Triangle>& triangles,
+                    const WindingNumber& winding, OpenSides sides, double reach) {
   OpenParts result;
-  if (isBalanced(mesh.triangles)) return result;
-  const TriangleMesh welded = weldedMesh(mesh);
-  if (isBalanced(welded.triangles)) return result;
+  if (isBalanced(triangles)) return result;
+  const TriangleMesh welded{mesh.positions, triangles, {}};
   ConnectedParts found = connectedParts(welded, reach);
+  result.gap = found.gap;
   std::vector<Part> parts;
   for (ConnectedPart& part : found.parts)
     parts.push_back({std::move(part.faces), part.rim_edges > 0, false, part.joined});
@@ -277,18 +275,19 @@ OpenParts openParts(const TriangleMesh& mesh, OpenSides sides, double reach) {
     changed->triangles.clear();
     for (const std::int32_t f : usable) changed->triangles.push_back(mesh.triangles[index(f)]);
   }
-  const std::vector<std::int32_t> inner = innerFaces(sound());
-  if (!inner.empty()) {
-    for (const std::int32_t f : inner) change().triangles[index(f)] = {-1, -1, -1};
-    std::erase(changed->triangles, Triangle{-1, -1, -1});
-  }
-  for (const std::int32_t f : misorientedTriangles(sound())) {
-    Triangle& t = change().triangles[index(f)];
-    std::swap(t[1], t[2]);
-  }
+  std::vector<Triangle> welded = weldedTriangles(sound());
+  const std::vector<std::int32_t> inner = innerFaces(sound(), welded);
+  if (!inner.empty())
+    for (auto* triangles : {&change().triangles, &welded}) {
+      for (const std::int32_t f : inner) (*triangles)[index(f)] = {-1, -1, -1};
+      std::erase(*triangles, Triangle{-1, -1, -1});
+    }
+  for (const std::int32_t f : misorientedTriangles(sound(), welded))
+    for (auto* triangles : {&change().triangles, &welded})
+      std::swap((*triangles)[index(f)][1], (*triangles)[index(f)][2]);
   OpenParts result;
-  if (!isBalanced(sound().triangles))
-    result = openParts(sound(), WindingNumber(sound()), sides, reach);
+  if (!isBalanced(welded))
+    result = openParts(sound(), welded, WindingNumber(sound()), sides, reach);
   result.inner_triangles = inner.size();
   return result;
 }

@@ -42,6 +42,7 @@ struct OpenParts {
   std::vector<PartSides> decided;       // one a part; empty without boundary edges
   std::vector<FaceEdge> seams;          // edges along which loose pieces of one part meet
   std::vector<Hole> holes;              // holes of closed parts, the largest first
+  double gap = 0;                       // widest between joined pieces [m]
   std::size_t inner_triangles = 0;      // left out of a mesh as read, see innerFaces()
   bool any() const { return parts > 0; }
 };
@@ -58,10 +59,10 @@ struct OpenParts {
 // Otherwise `sides` holds for every part with a boundary; `two` also for parts without one that
 // cannot be oriented (a Klein bottle). All other parts are closed.
 //
-// Degenerate triangles must be left out, corners be finite. `winding`: of `mesh`. Parallel, and the
-// same for any number of threads.
-OpenParts openParts(const TriangleMesh& mesh, const WindingNumber& winding,
-                    OpenSides sides = OpenSides::automatic, double reach = 0);
+// Degenerate triangles must be left out, corners be finite. `welded`: the weldedTriangles() of
+// `mesh`; `winding`: its winding number. Parallel, and the same for any number of threads.
+OpenParts openParts(const TriangleMesh& mesh, const std::vector<Triangle>& welded,
+                    const WindingNumber& winding, OpenSides sides, double reach);
 
 // The same for a mesh as read: ignores unusable triangles and inner faces, turns misoriented ones.
 OpenParts openParts(const TriangleMesh& mesh, OpenSides sides = OpenSides::automatic,

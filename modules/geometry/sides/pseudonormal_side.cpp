@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/mesh/edge_uses.h"
+#include "geometry/mesh/vertex_weld.h"
 #include "geometry/tree/triangle_tree.h"
 
 namespace patina {
@@ -28,8 +29,8 @@ PseudonormalSide::PseudonormalSide(const TriangleMesh& mesh, const std::vector<s
   for (const FaceEdge& edge : seams)
     seam[index(edge.face)][static_cast<std::size_t>(edge.edge)] = 1;
   forEachEdge(
-      vertices_, first_duplicate_, [&](std::size_t f) { return open[f] != 0; },
-      [&](auto first, auto last) {
+      vertices_, [&](std::size_t f) { return open[f] != 0 && index(first_duplicate_[f]) == f; },
+      [&](const EdgeUse* first, const EdgeUse* last) {
         Edge edge;
         edge.rim =
             last - first == 1 &&
