@@ -308,7 +308,7 @@ TEST(MeshStrokes, TouchTheMeshWhereTheyPress) {
     if (!sample.touching) continue;
     touching += 1;
     const double radius = sample.position.norm() + sample.force * hand.compliance;
-    EXPECT_NEAR(radius, 0.05, 0.6e-3) << sample.t; // facets; the yielding is along z
+    EXPECT_NEAR(radius, 0.05, 0.1e-3) << sample.t; // facets; it yields along the normal
     EXPECT_GT(sample.position.z() / 0.05, 0.6) << "too steep";
   }
   EXPECT_GT(touching, 0.4 * static_cast<double>(times.size()));

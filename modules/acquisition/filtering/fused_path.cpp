@@ -11,6 +11,8 @@
 namespace patina {
 namespace {
 
+constexpr int kOutlierRounds = 6; // until the outliers stay the same
+
 // Marks samples far from any used pose.
 void markGaps(std::vector<PathSample>& path, const std::vector<CameraPose>& poses,
               const CameraTrack& track) {
@@ -56,7 +58,7 @@ FusedPath fuseWith(CameraTrack track, const std::vector<CameraPose>& poses,
   fusion.chooseVariance(&FusionScales::acceleration, {1, 4, 16, 64, 256});
   fusion.chooseNoise();
   fusion.weighBothWays();
-  fusion.refine();
+  for (int round = 0; round < kOutlierRounds && fusion.refine(); ++round) continue;
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (fused.track.verdicts[i] == PoseVerdict::used ||
         fused.track.verdicts[i] == PoseVerdict::outlier)

@@ -9,7 +9,8 @@ namespace patina {
 namespace {
 
 constexpr std::size_t kPosesPerInterval = 6; // with one process noise
-constexpr double kRejected = 1e-4; // weight of an outlier, which the next pass may take back
+// A chi^2 of six degrees of freedom exceeds it once in 2 million.
+constexpr double kOutlier = 40;
 
 std::vector<double> startsOf(const CameraTrack& track) {
   std::vector<double> starts;
@@ -107,7 +108,7 @@ void PathFusion::weighBothWays() {
     if (weights_[i] > 0) weights_[i] = 1 / least[i];
 }
 
-void PathFusion::refine() {
+bool PathFusion::refine() {
   const std::vector<FusionEvent> events =
       fusionEvents(windows_, input_, starts_, reference_, noise_);
   const FusionPass pass(events, windows_, input_, scales_);
@@ -124,8 +125,8 @@ void PathFusion::refine() {
                              input_.probe.tip);
       },
       progress_);
-  weigh();
   reference_ = ReferenceMotion(track_, std::move(times), std::move(nodes));
+  return weigh();
 }
 
 void PathFusion::chooseVariance(double FusionScales::*factor,
@@ -186,6 +187,68 @@ void PathFusion::chooseNoise() {
   if (interval < count) add(last);
 }
 
+double PathFusion::deviance() {
+  double sum = 0;
+  for (const double each : devianceOfPoses(noise_, scales_, false)) sum += each;
+  return sum;
+}
+
+// The filter is linear about its reference. Its response to displaced poses and rates is therefore
+// that of the innovations to the clock (separate bias: Friedland 1969).
+std::vector<ClockInnovation> PathFusion::clockInnovations(double middle) {
+  constexpr double kStep = 1e-3, kSkewStep = 1e-4; // [s], relative
+  const std::vector<FusionEvent> events =
+      fusionEvents(windows_, input_, starts_, reference_, noise_);
+  std::vector<CameraPose> poses = input_.poses;
+  std::vector<InertialReading> readings = windows_;
+  const FusionInput input{poses,          weights_,    input_.probe,
+                          input_.gravity, input_.bias, input_.rate_bias};
+  const FusionPass pass(events, readings, input, scales_);
+  std::vector<ClockInnovation> innovations;
+  const auto eachInnovation = [&](auto&& use) {
+    std::size_t n = 0;
+    pass.run(
+        [&](std::size_t k, const FusionStep& step) {
+          if (k == events.size()) return;
+          for (std::size_t i = 0; i < step.count; ++i)
+            use(n++, events[k].t, step.used[i].residual / std::sqrt(step.used[i].variance));
+        },
+        nullptr, progress_);
+  };
+  const auto differentiate = [&](int parameter, double step) {
+    eachInnovation([&](std::size_t n, double, double value) {
+      innovations[n].growth[parameter] = (value - innovations[n].value) / step;
+    });
+  };
+  // The pose of time t measures the motion of the reading's time t + offset.
+  const auto displacePoses = [&](auto&& delay) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (!(weights_[i] > 0)) continue;
+      const CameraPose& pose = input_.poses[i];
+      const TipMotion motion = reference_.at(pose.t);
+      const double by = delay(pose.t);
+      const Vec3 tip = pose.position + pose.orientation * input_.probe.tip;
+      poses[i].orientation = pose.orientation * rotationOf(by * motion.rate);
+      poses[i].position = tip + by * motion.velocity - poses[i].orientation * input_.probe.tip;
+    }
+  };
+  eachInnovation([&](std::size_t, double t, double value) {
+    innovations.push_back({t, value, Vec3::Zero()});
+  });
+  displacePoses([&](double) { return kStep; });
+  differentiate(0, kStep);
+  displacePoses([&](double t) { return kSkewStep * (t - middle); });
+  differentiate(1, kSkewStep);
+  if (std::none_of(readings.begin(), readings.end(),
+                   [](const InertialReading& reading) { return reading.has_rate; }))
+    return innovations;
+  poses = input_.poses;
+  for (InertialReading& reading : readings)
+    reading.rate -= kStep * reference_.at(reading.t).rate_of_rate;
+  differentiate(2, kStep);
+  return innovations;
+}
+
 void PathFusion::writeTo(FusedPath& fused, const std::vector<InertialReading>& readings) {
   const std::vector<FusionEvent> events =
       fusionEvents(readings, input_, starts_, reference_, noise_);
@@ -234,21 +297,25 @@ void PathFusion::writeInnovations(FusedPath& fused, const std::vector<InertialRe
 
 // Sets the weights by the scores. An outlier raises the scores of its neighbours, so that only
 // the worst pose of a neighbourhood loses weight at first.
-void PathFusion::weigh() {
+bool PathFusion::weigh() {
   constexpr std::size_t kNeighbours = 3;
   std::vector<std::size_t> used;
   for (std::size_t i = 0; i < weights_.size(); ++i)
     if (weights_[i] > 0) used.push_back(i);
   const std::vector<double> before = weights_;
+  bool changed = false;
   for (std::size_t k = 0; k < used.size(); ++k) {
     const std::size_t i = used[k];
     bool is_worst = true;
     for (std::size_t j = k - std::min(k, kNeighbours);
          j < std::min(k + kNeighbours + 1, used.size()); ++j)
       is_worst = is_worst && (scores_[used[j]].nis <= scores_[i].nis || before[used[j]] < 0.3);
-    const bool waits = isOutlier(i) && !is_worst && before[i] >= 0.3;
-    weights_[i] = waits ? 1 : isOutlier(i) ? kRejected : scores_[i].weight;
+    const bool is_far = scores_[i].nis > kOutlier, was_rejected = before[i] < 2 * kRejected;
+    const bool waits = is_far && !is_worst && before[i] >= 0.3;
+    weights_[i] = waits ? 1 : is_far ? kRejected : scores_[i].weight;
+    changed = changed || isOutlier(i) != was_rejected;
   }
+  return changed;
 }
 
 // Returns -2 log likelihood of each used pose, given all measurements before it.

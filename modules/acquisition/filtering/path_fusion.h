@@ -9,6 +9,14 @@
 
 namespace patina {
 
+// An innovation over its deviation, and its derivatives by the offset of the probe's clock [1/s],
+// by its skew about a time and by the gyroscope's delay [1/s].
+struct ClockInnovation {
+  double t = 0; // [s]
+  double value = 0;
+  Vec3 growth = Vec3::Zero();
+};
+
 class PathFusion {
  public:
   // Refers to track, poses, probe and progress, which must stay; `windows` are meansOverWindows().
@@ -19,8 +27,9 @@ class PathFusion {
   // Weighs each pose by its innovation in the better one of both directions of time, since a pose
   // beside a gap cannot be tested from one side.
   void weighBothWays();
-  // Smooths the means over windows, weighs the poses and linearises about the result.
-  void refine();
+  // Smooths the means over windows, weighs the poses and linearises about the result. Returns true
+  // if the outliers are others than before: one that was lost may have hidden another one.
+  bool refine();
   void forgetWeights() { weights_ = first_weights_; }
   // Chooses the factor of a sensor's variance by the likelihood of the poses.
   void chooseVariance(double FusionScales::*factor, std::initializer_list<double> factors);
@@ -28,17 +37,24 @@ class PathFusion {
   // than one that taps. An interval gets the largest noise of its neighbours, too.
   void chooseNoise();
 
-  // Returns true if pose i is an outlier: a chi^2 of six degrees of freedom exceeds the limit once
-  // in 2 million.
-  bool isOutlier(std::size_t i) const { return scores_[i].nis > 40; }
+  bool isOutlier(std::size_t i) const { return weights_[i] < 2 * kRejected; }
+  FusionScales scales() const { return scales_; }
+  void setScales(const FusionScales& scales) { scales_ = scales; }
+  // Returns -2 log likelihood of the poses; outliers count only so much.
+  double deviance();
+  // Returns the innovations of poses and readings and their derivatives; the skew is about `middle`
+  // [s].
+  std::vector<ClockInnovation> clockInnovations(double middle);
   // Smooths all readings; writes path, biases and innovations.
   void writeTo(FusedPath& fused, const std::vector<InertialReading>& readings);
 
  private:
   void writeInnovations(FusedPath& fused, const std::vector<InertialReading>& readings);
-  void weigh();
+  bool weigh();
   std::vector<double> devianceOfPoses(const std::vector<NoiseInterval>& noise,
                                       const FusionScales& scales, bool cross);
+
+  static constexpr double kRejected = 1e-4; // weight of an outlier, which a pass may take back
 
   const CameraTrack& track_;
   std::vector<InertialReading> windows_;
