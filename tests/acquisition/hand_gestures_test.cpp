@@ -223,7 +223,8 @@ TEST(ProbeClock, IsFoundToTwoMillisecondsOrUnknown) {
         const ClockFit fit = clockOf(made, offset);
         const std::optional<double> correction = correctionOf(fit, 5 + offset);
         EXPECT_EQ(correction.has_value(), fit.doubt.empty());
-        if (correction) EXPECT_NEAR(*correction, offset, 2e-3) << nameOf(kind) << bad;
+        EXPECT_NEAR(correction.value_or(offset), offset, 2e-3) << nameOf(kind) << bad;
+        if (bad) continue;
         found += correction.has_value();
         ++all;
       }
