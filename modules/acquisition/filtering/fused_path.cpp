@@ -11,7 +11,7 @@
 namespace patina {
 namespace {
 
-constexpr int kOutlierRounds = 6; // until the outliers stay the same
+constexpr int kOutlierRounds = 6; // maximum number of passes; the outliers then rarely change
 
 // Marks samples far from any used pose.
 void markGaps(std::vector<PathSample>& path, const std::vector<CameraPose>& poses,

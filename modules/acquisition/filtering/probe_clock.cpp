@@ -23,9 +23,9 @@ constexpr double kSkew = 3e-4;           // prior deviation, of two quartz clock
 constexpr double kGyroscopeDelay = 5e-3; // prior deviation [s]
 constexpr double kClearlyDelayed = 4;    // deviations of a significant delay
 constexpr int kRounds = 10;
-constexpr double kMostRatio = 0.7; // of two steps that is extrapolated
-constexpr double kHopeless = 300;  // a fit lowers the deviance of its start by less
-constexpr double kClearly = 30;    // difference of the deviance of clearly different fits
+constexpr double kMaxRatio = 0.7; // largest ratio of two steps that is extrapolated
+constexpr double kHopeless = 300; // a fit lowers the deviance of its start by less
+constexpr double kClearly = 30;   // difference of the deviance of clearly different fits
 
 using Accelerations = Eigen::Vector4d;
 
@@ -152,8 +152,8 @@ ClockSquare covarianceByParts(const ClockStep& step, const ClockVector& solution
 struct FittedClock {
   ClockVector x = ClockVector::Zero();
   ClockSquare independent = ClockSquare::Zero(), correlated = ClockSquare::Zero(); // covariances
-  double deviance = INFINITY;                                                      // of the poses
-  double parts = 0; // number of half seconds
+  double deviance = INFINITY; // deviance of the poses
+  double parts = 0;           // number of half seconds
   double deviation(int k) const { return std::sqrt(std::max(independent(k, k), correlated(k, k))); }
 };
 
@@ -201,7 +201,7 @@ class ClockSearch {
       const ClockVector change = solver.solve(step.all.right);
       // The poses' weights follow the clock, so that the steps shrink by a ratio (Aitken 1926).
       const double ratio = round > 0 ? change[0] / last : 0;
-      fit.x += change / (1 - std::clamp(ratio, 0., kMostRatio));
+      fit.x += change / (1 - std::clamp(ratio, 0., kMaxRatio));
       last = change[0];
       if (!(std::abs(fit.x[0]) < 1.1 * kFarthest) || !(std::abs(fit.x[1]) < 0.02))
         return std::nullopt;
