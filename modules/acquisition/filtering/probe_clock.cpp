@@ -20,6 +20,7 @@ constexpr double kWorstOffset = 0.02;    // largest accepted deviation of the of
 constexpr double kCorrelationTime = 0.5; // correlation time of the errors [s]
 constexpr double kSignificance = 1e-4;   // significance level of clocks that differ
 constexpr double kSkew = 3e-4;           // prior deviation, of two quartz clocks
+constexpr double kFarOff = 10;           // deviations of a clock that is far off
 constexpr double kGyroscopeDelay = 5e-3; // prior deviation [s]
 constexpr double kClearlyDelayed = 4;    // deviations of a significant delay
 constexpr int kRounds = 10;
@@ -232,7 +233,9 @@ class ClockSearch {
       return both.dot(P.topLeftCorner<2, 2>().inverse() * both);
     };
     const double free = fit.parts - 1;
+    // A clock that is hardly known is corrected only if it is far off: the tests assume many parts.
     clock.is_significant =
+        (clock.isKnown() || std::abs(fit.x[0]) > kFarOff * clock.deviation) &&
         testStatistic(fit.independent) > -2 * std::log(kSignificance) &&
         testStatistic(fit.correlated) > free * (std::pow(kSignificance, -2 / (free - 1)) - 1);
     return clock;
@@ -351,6 +354,11 @@ ClockFit fitClock(const CameraTrack& track, const std::vector<CameraPose>& poses
   const FittedClock& best = fits[0];
   if (!(best.deviation(0) < kWorstOffset))
     return unknownClock("the motion shows it to " + inMilliseconds(best.deviation(0)) + " only");
+  // A start that is nearly as likely would be likelier after a fit, which may fail.
+  for (const auto& [deviance, offset] : candidates)
+    if (std::abs(offset - best.x[0]) > 3 * kCoarseStep && deviance - best.deviance < kClearly)
+      return unknownClock("offsets of " + inMilliseconds(best.x[0]) + " and " +
+                          inMilliseconds(offset) + " fit alike");
   if (fits.size() > 1 && fits[1].deviance - best.deviance < kClearly)
     return unknownClock("offsets of " + inMilliseconds(best.x[0]) + " and " +
                         inMilliseconds(fits[1].x[0]) + " fit alike");
