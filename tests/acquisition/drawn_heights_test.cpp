@@ -102,8 +102,9 @@ void judge(const TriangleMesh& mesh, std::uint32_t seed, Parts& parts) {
       if (along - before < 0.1e-3) continue; // each position once
       before = along;
       const HandState state = handAt(hand, heights[i].t);
-      const double truth =
-          target.residual(Vec3(state.tip.x(), state.tip.y(), state.surface)).distance;
+      const Vec3 unloaded =
+          state.tip + hand.compliance * state.force * hand.normal(state.tip.head<2>());
+      const double truth = target.residual(unloaded).distance;
       const double found = height(fitted.texture, along);
       const bool ends = along < kEnd || along > length - kEnd;
       Part& part = along < kEnd                      ? parts.begin

@@ -185,15 +185,21 @@ TEST(FilteredScan, IsCancelled) {
 
 // --- Two clocks.
 
+std::optional<ProbeClock> clockOf(const Scan& scan) {
+  Progress progress;
+  const FusedOptions options;
+  return fitClock(firstPass(scan.poses, scan.probe, options), scan.poses, scan.samples, scan.probe,
+                  options, progress)
+      .clock;
+}
+
 TEST(ProbeClock, IsFoundToAMillisecond) {
   for (const auto& [offset, skew] : {std::pair(0.12, 1e-4), {-0.4, -5e-4}, {5e-3, 0.}}) {
     SimulatedProbe stream;
     stream.clock_offset = offset;
     stream.clock_skew = skew;
     const Scan scan = scanOf(6, stream);
-    FusedOptions options;
-    const auto clock = fitClock(firstPass(scan.poses, scan.probe, options), scan.samples,
-                                scan.probe, options.gravity);
+    const auto clock = clockOf(scan);
     ASSERT_TRUE(clock);
     EXPECT_TRUE(clock->is_significant);
     EXPECT_NEAR(clock->offset, offset, 2e-3);
@@ -211,9 +217,7 @@ TEST(ProbeClock, IsFoundInAFewSecondsToo) {
     stream.clock_offset = 0.1;
     scan.poses = simulateCamera(scan.hand, scan.probe, {}, seed);
     scan.samples = simulateProbe(scan.hand, scan.probe, stream, seed + 100);
-    const FusedOptions options;
-    const auto clock = fitClock(firstPass(scan.poses, scan.probe, options), scan.samples,
-                                scan.probe, options.gravity);
+    const auto clock = clockOf(scan);
     ASSERT_TRUE(clock);
     std::printf("%.1f s: %.2f +- %.2f ms\n", scan.hand.seconds(), 1e3 * clock->offset,
                 1e3 * clock->offset_deviation);
@@ -262,9 +266,7 @@ TEST(ProbeClock, IsUnchangedUnderCorrelatedErrors) {
             pose.orientation *
             Eigen::Quaterniond(1, turn.x() / 2, turn.y() / 2, turn.z() / 2).normalized();
       }
-      const FusedOptions options;
-      const auto clock = fitClock(firstPass(scan.poses, scan.probe, options), scan.samples,
-                                  scan.probe, options.gravity);
+      const auto clock = clockOf(scan);
       differ += clock && clock->is_significant;
     }
     std::printf("%g s, a stroke of %g s: %d\n", before, stroke, differ);
@@ -278,9 +280,7 @@ TEST(ProbeClock, IsNotGuessedFromAProbeAtRest) {
   scan.hand.moves = {{Vec2(0, 0), 10, 0, 0, 1}};
   scan.poses = simulateCamera(scan.hand, scan.probe, {}, 1);
   scan.samples = simulateProbe(scan.hand, scan.probe, {}, 2);
-  const FusedOptions options;
-  const auto clock = fitClock(firstPass(scan.poses, scan.probe, options), scan.samples, scan.probe,
-                              options.gravity);
+  const auto clock = clockOf(scan);
   EXPECT_TRUE(!clock || !clock->is_significant);
 }
 
@@ -308,7 +308,7 @@ TEST(MeshStrokes, TouchTheMeshWhereTheyPress) {
     if (!sample.touching) continue;
     touching += 1;
     const double radius = sample.position.norm() + sample.force * hand.compliance;
-    EXPECT_NEAR(radius, 0.05, 0.6e-3) << sample.t; // facets; the yielding is along z
+    EXPECT_NEAR(radius, 0.05, 0.1e-3) << sample.t; // facets; it yields along the normal
     EXPECT_GT(sample.position.z() / 0.05, 0.6) << "too steep";
   }
   EXPECT_GT(touching, 0.4 * static_cast<double>(times.size()));

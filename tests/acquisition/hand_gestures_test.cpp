@@ -123,8 +123,8 @@ TEST(FusedPath, FollowsEveryHandAtLeastAsWellAsTheSimplestModel) {
   for (const HandGesture kind : kHandGestures) {
     const Recording made = recordingOf(kind, 1, false);
     const JudgedPath velocity = judged(made, PathModel::velocity, false),
-                 fused = judged(made, PathModel::fused, false),
-                 turning = judged(made, PathModel::fused, true);
+                     fused = judged(made, PathModel::fused, false),
+                     turning = judged(made, PathModel::fused, true);
     std::printf("%-8s velocity %.3f mm, accelerometers %.3f (NEES %.2f), gyroscope %.3f (%.2f)\n",
                 nameOf(kind), 1e3 * velocity.rms, 1e3 * fused.rms, fused.nees, 1e3 * turning.rms,
                 turning.nees);
@@ -142,8 +142,8 @@ TEST(FusedPath, StatesItsErrorInGapsBetweenOutliers) {
   for (const HandGesture kind : kHandGestures) {
     const Recording made = recordingOf(kind, 1, true);
     const JudgedPath velocity = judged(made, PathModel::velocity, false),
-                 fused = judged(made, PathModel::fused, false),
-                 turning = judged(made, PathModel::fused, true);
+                     fused = judged(made, PathModel::fused, false),
+                     turning = judged(made, PathModel::fused, true);
     std::printf("%-8s velocity %.3f mm, accelerometers %.3f outside the gaps, %.1f %% beyond 3 "
                 "sigma inside; gyroscope %.3f over all\n",
                 nameOf(kind), 1e3 * velocity.rms, 1e3 * fused.outside, 100 * fused.beyond,
@@ -156,6 +156,94 @@ TEST(FusedPath, StatesItsErrorInGapsBetweenOutliers) {
       EXPECT_LE(each.nees, 3) << nameOf(kind);
       EXPECT_LE(each.rejected, 0.01) << nameOf(kind);
     }
+  }
+}
+
+// An outlier beside a gap or at the end is predicted from one side only, and its good neighbours
+// were rejected in its place.
+TEST(FusedPath, KeepsGoodPosesBesideAnOutlierAtAGap) {
+  for (const HandGesture kind : {HandGesture::tapping, HandGesture::stopping}) {
+    Recording made = recordingOf(kind, 3, false);
+    for (const double from : {2., 5., 8.}) made.gaps.push_back({from, from + 0.5});
+    std::erase_if(made.poses, [&](const CameraPose& pose) {
+      return std::any_of(made.gaps.begin(), made.gaps.end(),
+                         [&](const Gap& gap) { return pose.t >= gap.from && pose.t < gap.to; });
+    });
+    made.wrong.assign(made.poses.size(), false);
+    const auto spoil = [&](std::size_t i) {
+      made.poses[i].position += Vec3(0.02, -0.03, 0.025);
+      made.wrong[i] = true;
+    };
+    std::vector<std::size_t> edges{made.poses.size() - 1};
+    for (std::size_t i = 1; i < made.poses.size(); ++i)
+      if (made.poses[i].t - made.poses[i - 1].t > 0.4) edges.push_back(i - edges.size() % 2);
+    for (const std::size_t edge : edges) spoil(edge);
+    for (const bool gyroscope : {false, true}) {
+      const JudgedPath path = judged(made, PathModel::fused, gyroscope);
+      EXPECT_LE(path.rejected, 0.005) << nameOf(kind) << gyroscope;
+      EXPECT_LE(path.outside, 0.5e-3) << nameOf(kind) << gyroscope;
+    }
+  }
+}
+
+// The likeliest noise of the angle was that of the pauses, with each turn an outlier.
+TEST(CameraTrack, KeepsThePosesOfAHandThatTurnsAndPauses) {
+  for (const std::uint32_t seed : {1, 10}) {
+    const Recording made = recordingOf(HandGesture::turning, seed, false);
+    const CameraTrack track = firstPass(made.poses, made.probe, {});
+    EXPECT_EQ(track.used(), made.poses.size()) << seed;
+  }
+}
+
+std::vector<ProbeSample> shifted(std::vector<ProbeSample> samples, double offset) {
+  for (ProbeSample& sample : samples) sample.t += offset;
+  return samples;
+}
+
+ClockFit clockOf(const Recording& made, double offset, const Vec3& gravity = kGravity) {
+  FusedOptions options;
+  options.gravity = gravity;
+  Progress progress;
+  return fitClock(firstPass(made.poses, made.probe, options), made.poses,
+                  shifted(made.samples, offset), made.probe, options, progress);
+}
+
+// The offset at which stamps of the middle are corrected; absent if unknown.
+std::optional<double> correctionOf(const ClockFit& fit, double middle) {
+  if (!fit.clock || !fit.clock->isKnown()) return std::nullopt;
+  return fit.clock->is_significant ? middle - fit.clock->onCamera(middle) : 0.;
+}
+
+TEST(ProbeClock, IsFoundToTwoMillisecondsOrUnknown) {
+  int found = 0, all = 0;
+  for (const HandGesture kind : kHandGestures)
+    for (const bool bad : {false, true}) {
+      const Recording made = recordingOf(kind, 1, bad);
+      for (const double offset : {0., 0.02, -0.05, 0.2}) {
+        const ClockFit fit = clockOf(made, offset);
+        const std::optional<double> correction = correctionOf(fit, 5 + offset);
+        EXPECT_EQ(correction.has_value(), fit.doubt.empty());
+        EXPECT_NEAR(correction.value_or(offset), offset, 2e-3) << nameOf(kind) << bad;
+        if (bad) continue;
+        found += correction.has_value();
+        ++all;
+      }
+    }
+  EXPECT_GE(found, 0.9 * all);
+}
+
+// A gyroscope with a low-pass filter lags behind the accelerometers.
+TEST(ProbeClock, FindsTheDelayOfAGyroscope) {
+  for (const double delay : {0., 4e-3}) {
+    Recording made = recordingOf(HandGesture::fast, 1, false);
+    for (RateSample& rate : made.rates) rate.t += 0.02 + delay;
+    Progress progress;
+    const ClockFit fit =
+        fitClock(firstPass(made.poses, made.probe, {}), made.poses, shifted(made.samples, 0.02),
+                 made.probe, {}, progress, made.rates);
+    ASSERT_TRUE(fit.clock);
+    EXPECT_NEAR(fit.clock->ofGyroscope(5.02 + delay), 5, 1e-3) << delay;
+    EXPECT_EQ(fit.clock->gyroscope_delay == 0, delay == 0);
   }
 }
 
@@ -194,6 +282,16 @@ TEST(FusedPath, FollowsARecordedHandThatTaps) {
   std::printf("velocity %.3f mm, fused %.3f mm\n", 1e3 * velocity, 1e3 * fused);
   EXPECT_LE(fused, 0.6e-3);
   EXPECT_LE(fused, 1.05 * velocity);
+  Recording made;
+  made.probe = rig.probe;
+  made.poses = poses;
+  made.samples = samples;
+  for (const double offset : {0., 0.02, -0.02, 0.05, -0.05, 0.2, -0.2}) {
+    const auto correction =
+        correctionOf(clockOf(made, offset, rig.gravity), poses[poses.size() / 2].t + offset);
+    ASSERT_TRUE(correction) << offset;
+    EXPECT_NEAR(*correction, offset, 2e-3);
+  }
 }
 
 } // namespace

@@ -86,8 +86,9 @@ void judge(const ScanFiles& files, const SurfaceTarget& target, const Registered
   for (ScanHeight& height : heights) {
     const auto at = std::lower_bound(tips.begin(), tips.end() - 1, height.t,
                                      [](const PathSample& tip, double t) { return tip.t < t; });
-    const Vec3 place = truth * at->position;
-    height.point.height = relief(place.head<2>()) * target.residual(place).direction.z();
+    // The surface yields along its normal, at whose foot the relief is.
+    const SurfaceResidual residual = target.residual(truth * at->position);
+    height.point.height = relief(residual.at.head<2>()) * residual.direction.z();
   }
   const FourierTexture real = fitTexture(profileOf(heights), scanFitOptions()).texture;
   constexpr int kPlaces = 2000;

@@ -20,8 +20,15 @@ struct MeasuredPose {
   double tip_noise = 0, turn_noise = 0;
 };
 
-// Returns -2 log likelihood of the innovations of tips or orientations. Each squared innovation is
-// capped at the gate, so that outliers do not determine the noise.
+// Returns -2 log likelihood of a pose that the motion does not predict: an outlier, or a restart.
+// It is within a jump at speed `fastest`.
+double devianceElsewhere(double fastest, double gate) {
+  constexpr double kElsewhere = 0.3; // duration of the jump [s]
+  return gate + 6 * std::log(kElsewhere * fastest);
+}
+
+// Returns -2 log likelihood of the innovations of tips or orientations. Outliers cost the same
+// whatever the noise is, so that they do not determine it.
 template <int N, int C, class Part>
 double deviance(const std::vector<MeasuredPose>& measured, const std::vector<PoseVerdict>& verdicts,
                 double noise, double fastest, double gate, const Part& part) {
@@ -32,6 +39,7 @@ double deviance(const std::vector<MeasuredPose>& measured, const std::vector<Pos
     if (verdicts[i] != PoseVerdict::used) continue;
     auto [value, variance] = part(measured[i]);
     if (!state || refused >= 5) {
+      if (state) sum += devianceElsewhere(fastest, gate);
       state = firstState<N, C>(value, variance, fastest);
       t = measured[i].t;
       refused = 0;
@@ -41,8 +49,10 @@ double deviance(const std::vector<MeasuredPose>& measured, const std::vector<Pos
     t = measured[i].t;
     if (C == 4 && state->x.row(0).dot(value) < 0) value = -value;
     const Innovation<C> innovation = innovationOf(*state, value, variance);
-    sum += 3 * std::log(std::max(innovation.variance, 1e-300)) + std::min(innovation.nis(), gate);
-    refused = innovation.nis() > gate ? refused + 1 : 0;
+    const bool is_refused = innovation.nis() > gate;
+    sum += is_refused ? devianceElsewhere(fastest, gate)
+                      : 3 * std::log(std::max(innovation.variance, 1e-300)) + innovation.nis();
+    refused = is_refused ? refused + 1 : 0;
     if (refused == 0) update(*state, innovation);
   }
   return sum;
@@ -99,8 +109,7 @@ std::vector<double> localNoise(const std::vector<MeasuredPose>& measured,
                                double fastest, double gate, const Part& part) {
   constexpr std::size_t kTogether = 4;
   constexpr double kFactors[] = {1, 4, 16, 64, 256, 1024};
-  constexpr double kElsewhere = 0.3; // duration of a jump at speed `fastest` [s]
-  constexpr double kClearly = 8;     // smallest gain in deviance for a larger noise
+  constexpr double kClearly = 8; // smallest gain in deviance for a larger noise
   std::vector<double> noise(measured.size(), usual);
   std::vector<std::size_t> used;
   for (std::size_t i = 0; i < measured.size(); ++i)
@@ -151,8 +160,7 @@ std::vector<double> localNoise(const std::vector<MeasuredPose>& measured,
       consider(trial, begin, factor * usual, factor * usual);
     }
     // Alternatively the earlier poses were outliers or the poses have jumped: restarts here.
-    consider(begunAt(used[begin], gate + 6 * std::log(kElsewhere * fastest)), begin + 1, usual,
-             usual);
+    consider(begunAt(used[begin], devianceElsewhere(fastest, gate)), begin + 1, usual, usual);
     run = best;
   }
   return noise;

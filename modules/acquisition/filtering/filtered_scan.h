@@ -6,27 +6,9 @@
 
 #include "acquisition/filtering/camera_track.h"
 #include "acquisition/filtering/fused_path.h"
+#include "acquisition/filtering/probe_clock.h"
 
 namespace patina {
-
-// Offset of the probe's clock from the camera's, estimated from the common motion.
-
-// A stamp t of the probe is t - offset - skew (t - start) on the camera's clock.
-struct ProbeClock {
-  double start = 0, offset = 0; // [s]
-  double skew = 0;              // relative excess rate of the probe's clock
-  double offset_deviation = 0, skew_deviation = 0;
-  bool is_significant = false; // offset or skew are statistically significant
-
-  double onCamera(double t) const { return t - offset - skew * (t - start); }
-};
-
-// Compares the accelerometers with the accelerations of the camera's smoothed track: gravity by the
-// probe's tilt, and the hand's own motion. Finds offsets up to half a second. Returns nullopt if
-// the probe hardly rotates or moves while it is tracked. Samples are in the order of time.
-std::optional<ProbeClock> fitClock(const CameraTrack& track,
-                                   const std::vector<ProbeSample>& samples, const ProbeModel& probe,
-                                   const Vec3& gravity);
 
 enum class PathModel { fused, acceleration, velocity };
 
@@ -48,7 +30,7 @@ struct FilteredScan {
   // samples on the camera's clock. Both are empty for the other models.
   std::vector<PathSample> whole;
   std::vector<ProbeSample> samples;
-  std::optional<ProbeClock> clock;  // present with calibrated accelerometers; applied if it differs
+  std::optional<ProbeClock> clock;  // absent unless known; applied if it differs
   std::array<double, 4> axis_nis{}; // see FusedPath, also for pose_nis; 0 if not used
   double pose_nis = 0;
   std::vector<std::string> warnings; // reasons why the result may be wrong

@@ -19,6 +19,12 @@ class Heights {
     const std::optional<RayHit> hit = hitAt(place);
     return hit ? top() - hit->t : box_.min().z();
   }
+  // Outward normal of the surface's slope within kReach, which changes continuously over facets.
+  Vec3 normalAt(const Vec2& place) const {
+    const Vec2 x(kReach, 0), y(0, kReach);
+    return Vec3(at(place - x) - at(place + x), at(place - y) - at(place + y), 2 * kReach)
+        .normalized();
+  }
   bool reachable(const Vec2& place) const {
     const double here = at(place);
     for (const Vec2& aside : {Vec2(kReach, 0), Vec2(-kReach, 0), Vec2(0, kReach), Vec2(0, -kReach)})
@@ -49,6 +55,7 @@ SimulatedHand scanPathsOver(const TriangleMesh& mesh, std::uint32_t seed, double
   SimulatedHand hand = strokes(seed, seconds, speed, area);
   hand.travel_height += heights->box().max().z();
   hand.relief = [heights](const Vec2& place) { return heights->at(place); };
+  hand.normal = [heights](const Vec2& place) { return heights->normalAt(place); };
   return hand;
 }
 

@@ -7,7 +7,8 @@
 namespace patina {
 
 // Returns strokes over the parts of the mesh that are visible along -z and no steeper than 45
-// degrees, for a point tip. Throws Error if they are too small.
+// degrees, for a point tip. The surface yields along its normal. Throws Error if they are too
+// small.
 SimulatedHand scanPathsOver(const TriangleMesh& mesh, std::uint32_t seed, double seconds,
                             double speed);
 
