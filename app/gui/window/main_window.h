@@ -84,12 +84,14 @@ class MainWindow : public QMainWindow {
 
  private:
   void addMenus(); // In window_menus.cpp.
+  void searchActions();
   void connectFiles();
   void connectWelcome();
   void connectScene();
   void connectTools();
   void connectScan(); // In connect_scan.cpp.
   void tick();
+  void showTool();
   void say(Message message);
   WindowState state() const;
   void refresh() { showState(state(), parts_, *this); }
@@ -106,6 +108,7 @@ class MainWindow : public QMainWindow {
   EditController edits_;
   PaintController paint_;
   ProbeController probe_;
+  GapFinder gap_{this};
   MeasureController measure_;
   SaveController saving_;
   DocumentController documents_;
