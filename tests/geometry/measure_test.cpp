@@ -1,11 +1,13 @@
 // Lengths over a mesh and fitted radii, against closed forms.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "geometry/measure/fit_shape.h"
 #include "geometry/measure/geodesic.h"
+#include "geometry/measure/mesh_part.h"
 #include "geometry/measure/patch_area.h"
 #include "geometry/mesh/shapes.h"
 #include "geometry/tree/triangle_tree.h"
@@ -115,6 +117,55 @@ TEST(Geodesic, IsAsLongBackAsForthFromVerticesEdgesAndFaces) {
       EXPECT_GE(forth->length, (position(mesh, a) - position(mesh, b)).norm() * (1 - 1e-12));
     }
   }
+}
+
+TEST(Geodesic, IsTheSameFromThePartOfTheMeshThatItNeeds) {
+  std::mt19937 random(5);
+  for (const TriangleMesh& mesh : {icosphere(0.03, 20), vase(), box(Vec3::Constant(0.1), 7)}) {
+    const Measured m(mesh);
+    std::uniform_int_distribution<std::int32_t> any(
+        0, static_cast<std::int32_t>(mesh.triangles.size()) - 1);
+    for (int i = 0; i < 8; ++i) {
+      const SurfacePoint a{any(random), {0.2, 0.3, 0.5}}, b{any(random), {0.6, 0.1, 0.3}};
+      const auto whole = geodesicPath(m.mesh, m.neighbours, a, b), part = geodesicPath(mesh, a, b);
+      ASSERT_TRUE(whole && part);
+      EXPECT_NEAR(part->length, whole->length, 1e-3 * whole->length);
+    }
+  }
+}
+
+TEST(Geodesic, FollowsDetoursOfAnyLengthAndCanBeCancelled) {
+  // The points are 2 mm apart, on both sides of a wall that is 0.1 m high.
+  const TriangleMesh wall = box(Vec3(0.1, 2e-3, 0.1), 10);
+  const Measured m(wall);
+  const SurfacePoint front = m.on({0, -1e-3, 0}), back = m.on({0, 1e-3, 0});
+  const auto path = geodesicPath(wall, front, back);
+  ASSERT_TRUE(path);
+  EXPECT_NEAR(path->length, 0.102, 1e-12);
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(geodesicPath(wall, front, back, progress), Cancelled);
+}
+
+TEST(PartOfAMesh, HasEveryFaceThatAPathOfTheLengthCanReach) {
+  const TriangleMesh ball = icosphere(0.03, 12);
+  const Vec3 a(0.03, 0, 0), b(0.02, 0.022, 0);
+  const double longest = 1.3 * (b - a).norm();
+  const MeshPart part = partWithin(ball, a, b, longest);
+  EXPECT_LT(part.face.size(), ball.triangles.size() / 4);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (std::size_t f = 0; f < ball.triangles.size(); ++f)
+    for (int i = 0; i < 20; ++i) {
+      const double u = unit(random), v = (1 - u) * unit(random);
+      const Vec3 p =
+          u * ball.corner(f, 0) + v * ball.corner(f, 1) + (1 - u - v) * ball.corner(f, 2);
+      if ((p - a).norm() + (p - b).norm() > longest) continue;
+      EXPECT_TRUE(std::binary_search(part.face.begin(), part.face.end(), f));
+    }
+  for (std::size_t i = 0; i < part.face.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      EXPECT_EQ(part.mesh.corner(i, k), ball.corner(static_cast<std::size_t>(part.face[i]), k));
 }
 
 TEST(Geodesic, FindsNoPathBetweenPartsThatDoNotTouch) {

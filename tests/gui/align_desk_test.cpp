@@ -199,7 +199,7 @@ TEST_F(AlignDeskTest, ReadsResidualsUnderThePointerAndColoursThem) {
 
   openTab("show");
   wait(100);
-  EXPECT_EQ(find<QComboBox>("color_thing")->currentText(), QStringLiteral("Error map"));
+  EXPECT_EQ(find<ColorPanel>()->title(), QStringLiteral("Colours: error map"));
   constexpr std::uint32_t kDown = 0xff54;
   click(*find<QComboBox>("color_map"));
   wait(200);

@@ -21,7 +21,7 @@ class ClipPlaneTest : public DrivenWindow {
   }
   void turnOn() {
     type('s', kShift);
-    ASSERT_TRUE(find<QCheckBox>("clip")->isChecked());
+    ASSERT_TRUE(isShown("clip"));
     wait(150);
   }
   // Returns a point of the scene on the screen.
@@ -47,7 +47,7 @@ TEST_F(ClipPlaneTest, AppearsByItsKeyAndDisappearsWithoutATrace) {
   turnOn();
   EXPECT_TRUE(find<QAction>("show_clip")->isChecked());
   EXPECT_LT(outside(), 0.7 * before);
-  clickOn("clip");
+  clickRow("clip");
   pointAt(inView({0, 150}));
   ASSERT_FALSE(find<QAction>("show_clip")->isChecked());
   ASSERT_TRUE(waitUntil([&] { return view().frames().settled(); }, 5000));

@@ -55,18 +55,56 @@ TEST_F(Controls, CrossRemovesARowByKey) {
       << "Space belonged to the button";
 }
 
-TEST_F(Controls, SpaceTogglesACheckBoxAndKeepsTheTool) {
+TEST_F(Controls, SpaceTogglesTheSelectedRowAndKeepsTheTool) {
   openTab("show");
   wait(50);
-  auto* slice = find<QCheckBox>("slice");
-  slice->setFocus(Qt::TabFocusReason);
+  auto* list = find<QListWidget>("layers");
+  list->setFocus(Qt::TabFocusReason);
+  list->setCurrentItem(rowOf("slice"));
   type(' ');
-  EXPECT_TRUE(slice->isChecked());
+  EXPECT_TRUE(isShown("slice"));
   EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::feel);
   click(view());
   type(' ');
-  EXPECT_TRUE(slice->isChecked());
+  EXPECT_TRUE(isShown("slice"));
   EXPECT_EQ(find<ToolBar>()->choice().handling, InteractionMode::navigate);
+}
+
+TEST_F(Controls, UndoTakesBackAValueThatHasJustBeenSet) {
+  const auto stiffness = [&] { return edits().scene()->scene.haptics.stiffness; };
+  const double before = stiffness();
+  click(*find<ValueRow>("stiffness")->findChild<QDoubleSpinBox*>());
+  type('a', kControl);
+  type(QStringLiteral("900"));
+  type(kEnter);
+  ASSERT_TRUE(waitUntil([&] { return stiffness() == 900; }, 3000));
+  EXPECT_EQ(edits().status().done, 0U) << "it is no edit yet";
+  for (const QAction* action : window_->findChildren<QAction*>())
+    if (action->text() == QStringLiteral("&Undo")) {
+      EXPECT_TRUE(action->isEnabled());
+    }
+  type('z', kControl);
+  EXPECT_TRUE(waitUntil([&] { return stiffness() == before; }, 3000));
+  EXPECT_EQ(find<ValueRow>("stiffness")->value(), before);
+  wait(600);
+  EXPECT_EQ(stiffness(), before);
+}
+
+TEST_F(Controls, RecordingNeedsTwoKeysAndSaysThatItRuns) {
+  type('r');
+  wait(100);
+  EXPECT_FALSE(feel().recording());
+  type('r', kControl);
+  ASSERT_TRUE(waitUntil([&] { return feel().recording(); }, 3000));
+  EXPECT_TRUE(find<QLabel>("notice")->text().startsWith(QStringLiteral("Recording")));
+}
+
+TEST_F(Controls, DesksHaveTheKeysOneToSixFromLeftToRight) {
+  char key = '1';
+  for (const DeskRow& row : deskRows()) {
+    type(static_cast<std::uint32_t>(key++), kControl);
+    EXPECT_TRUE(find<QAction>(QStringLiteral("desk_") + row.name)->isChecked()) << row.name;
+  }
 }
 
 TEST_F(Controls, SwatchShowsThePaintColour) {

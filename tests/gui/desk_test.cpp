@@ -53,10 +53,10 @@ TEST_F(Desks, BarSwitchesDesksAndKeepsTools) {
   type(QStringLiteral("h")); // relief, a tool of Paint
   EXPECT_EQ(desk(), Desk::paint);
   EXPECT_TRUE(find<ReliefPanel>()->isVisible());
-  type('1', kControl);
+  type('4', kControl);
   EXPECT_EQ(desk(), Desk::feel);
   EXPECT_FALSE(find<ReliefPanel>()->isVisible());
-  type('2', kControl);
+  type('5', kControl);
   EXPECT_TRUE(find<ToolBar>()->choice() == (ToolChoice{InteractionMode::paint, Tool::relief}));
 }
 

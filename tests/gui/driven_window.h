@@ -9,6 +9,7 @@
 #include <QAbstractNativeEventFilter>
 #include <QFileDialog>
 #include <QMenuBar>
+#include <QScrollArea>
 #include <QToolBar>
 #include <QWindow>
 
@@ -91,6 +92,19 @@ class DrivenWindow : public WindowTest {
     auto* widget = find<QAbstractButton>(name);
     ASSERT_NE(widget, nullptr) << name.toStdString();
     click(*widget);
+  }
+  // Clicks the check of a row in the list of what is shown, or its name.
+  void clickRow(const QString& thing, bool on_name = false) {
+    auto* list = find<QListWidget>("layers");
+    ASSERT_TRUE(list->isVisible());
+    for (QWidget* up = list; up != nullptr; up = up->parentWidget())
+      if (auto* area = qobject_cast<QScrollArea*>(up)) area->ensureWidgetVisible(list);
+    const QRect row = list->visualItemRect(rowOf(thing));
+    pointAt(list->viewport()->mapToGlobal(
+        {row.left() + (on_name ? row.width() / 2 : 10), row.center().y()}));
+    press();
+    release();
+    wait(30);
   }
   // Clicks an action of the top bar.
   void clickAction(const QString& name) {

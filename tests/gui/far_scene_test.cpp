@@ -36,7 +36,7 @@ class FarScene : public DrivenWindow {
     for (Vec3& p : cube.positions) p += middle_of_cube;
     EXPECT_TRUE(open(saved(cube, name + ".ply")));
     trigger("view_+z");
-    find<QCheckBox>(QStringLiteral("tip"))->setChecked(false);
+    show(Layer::tip, false);
     wait(1000);
 
     type(QStringLiteral("p")); // opens its panel once, so that both views have the same size

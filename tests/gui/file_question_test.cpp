@@ -74,6 +74,41 @@ TEST_F(FileQuestions, NameAndEnterOpenAWorkspace) {
   EXPECT_TRUE(waitUntil([&] { return edits().status().folder.has_value(); }, 10000));
 }
 
+TEST_F(FileQuestions, BeginWhereTheLastOneEnded) {
+  const auto other = folder_ / "other";
+  std::filesystem::create_directory(other);
+  writeMesh(other / "ball.obj", icosphere(30, 12)); // in mm
+  type('o', kControl);
+  WorkspaceFileDialog* dialog = question();
+  ASSERT_NE(dialog, nullptr);
+  enter(*dialog, text(other / "ball.obj"));
+  ASSERT_TRUE(waitUntil([&] { return !edits().status().folder.has_value(); }, 10000));
+  wait(300);
+  type('o', kControl);
+  dialog = question();
+  ASSERT_NE(dialog, nullptr);
+  EXPECT_EQ(dialog->directory().path(), text(other));
+  type(kEscape);
+}
+
+TEST_F(FileQuestions, TakeTheUnitAndTheUpAxisOfAMesh) {
+  saved(box(Vec3(2, 4, 6)), "plank.obj");
+  type('o', kControl);
+  WorkspaceFileDialog* dialog = question();
+  ASSERT_NE(dialog, nullptr);
+  auto* unit = dialog->findChild<QComboBox*>("open_unit");
+  constexpr std::uint32_t kDown = 0xff54;
+  click(*unit);
+  wait(200);
+  for (int i = 0; i < 4; ++i) type(kDown); // inches
+  type(kEnter);
+  click(*dialog->findChild<QCheckBox*>("open_y_up"));
+  enter(*dialog, text(folder_ / "plank.obj"));
+  ASSERT_TRUE(waitUntil([&] { return edits().scene()->mesh->triangles.size() == 12; }, 10000));
+  const Vec3 sides = bounds(*edits().scene()->mesh).sizes();
+  EXPECT_NEAR((sides - 0.0254 * Vec3(2, 6, 4)).norm(), 0, 1e-9) << "y is up";
+}
+
 TEST_F(FileQuestions, NameAndEnterOpenAScanFolder) {
   std::filesystem::create_directory(folder_ / "scan");
   std::ofstream(folder_ / "scan" / "poses.tum") << "0 0 0 0.5 0 0 0 1\n0.1 0 0 0.5 0 0 0 1\n";

@@ -59,6 +59,10 @@ TEST_F(GuideOfTheWindow, NamesEveryPanelAndEveryLayer) {
   const QString text = QString::fromStdString(guide("user_guide.md")).toLower();
   for (const QGroupBox* card : window_->findChildren<QGroupBox*>())
     EXPECT_TRUE(text.contains(card->title().toLower())) << card->title().toStdString();
+  auto* list = find<QListWidget>("layers");
+  for (int i = 0; i < list->count(); ++i)
+    EXPECT_TRUE(text.contains(list->item(i)->text().toLower()))
+        << list->item(i)->text().toStdString();
   for (const QCheckBox* box : window_->findChildren<QCheckBox*>()) {
     const QString word = box->text().toLower().split(' ').front();
     EXPECT_TRUE(text.contains(word)) << box->text().toStdString();

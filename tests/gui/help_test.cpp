@@ -52,6 +52,30 @@ TEST_F(Help, DisabledActionsAreGreyAndDoNotRun) {
   EXPECT_NE(find<QWidget>("action_search"), nullptr) << "still there, because nothing was done";
 }
 
+TEST_F(Help, WordFindsASettingOfAPanelAndReturnShowsIt) {
+  QListWidget* list = search(QStringLiteral("show field ext"));
+  ASSERT_NE(list, nullptr);
+  ASSERT_TRUE(waitUntil([&] { return list->count() == 2; }, 3000)) << "the menu's and the row";
+  type(kEscape);
+  ASSERT_TRUE(waitUntil([&] { return find<QWidget>("action_search") == nullptr; }, 3000));
+  list = search(QStringLiteral("touch stiff"));
+  ASSERT_NE(list, nullptr);
+  ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
+  type(kEnter);
+  auto* number = find<ValueRow>("stiffness")->findChild<QDoubleSpinBox*>();
+  ASSERT_TRUE(waitUntil([&] { return number->isVisible() && number->hasFocus(); }, 3000));
+}
+
+TEST_F(Help, SaysIfNothingIsCalledThat) {
+  QListWidget* list = search(QStringLiteral("xyzzy"));
+  ASSERT_NE(list, nullptr);
+  ASSERT_TRUE(waitUntil([&] { return list->count() == 1; }, 3000));
+  EXPECT_EQ(list->item(0)->text(), QStringLiteral("Nothing is called “xyzzy”"));
+  type(kEnter);
+  wait(100);
+  EXPECT_NE(find<QWidget>("action_search"), nullptr);
+}
+
 TEST_F(Help, GuideEqualsTheDocument) {
   QListWidget* list = search(QStringLiteral("user guide"));
   ASSERT_NE(list, nullptr);

@@ -1,8 +1,13 @@
 // A person reads, colours and measures fields by pointer and keys, each job within six clicks.
 #include <QAbstractItemView>
 #include <QRegularExpression>
+#include <QSpinBox>
 
 #include <vtkCamera.h>
+#include <vtkPropCollection.h>
+#include <vtkRenderWindow.h>
+#include <vtkRendererCollection.h>
+#include <vtkTextActor.h>
 
 #include "app/gui/panels/measure_panel.h"
 #include "app/gui/toolkit/value_row.h"
@@ -99,6 +104,43 @@ TEST_F(Inspecting, ReadsTheValuesUnderThePointerOfBodySliceAndIsoSurface) {
   EXPECT_TRUE(waitUntil([&] { return picked().isEmpty(); }, 3000));
 }
 
+TEST_F(Inspecting, SelectsTheRowOfWhatIsClickedAndShowsItsValuesAndColours) {
+  if (IsSkipped()) return;
+  begin(icosphere(kRadius, 24));
+  const auto selected = [&] { return find<QListWidget>("layers")->currentItem(); };
+  const auto title = [&] { return find<ColorPanel>()->title().toStdString(); };
+  EXPECT_EQ(title(), "Colours: mesh");
+  clickRow("slice"); // one click shows it, with its values
+  EXPECT_EQ(selected(), rowOf("slice"));
+  EXPECT_TRUE(find<ValueRow>("slice_position")->isVisible());
+  EXPECT_EQ(title(), "Colours: slice");
+  keepPicture("things_slice");
+  clickRow("mesh", true);
+  EXPECT_TRUE(isShown("mesh")) << "its name only selects it";
+  EXPECT_FALSE(find<ValueRow>("slice_position")->isVisible());
+  EXPECT_EQ(title(), "Colours: mesh");
+  clickRow("clip", true);
+  EXPECT_TRUE(find<QToolButton>("clip_x")->isVisible());
+  EXPECT_FALSE(find<QToolButton>("clip_x")->isEnabled()) << "there is no clip plane yet";
+  EXPECT_FALSE(find<ColorPanel>()->isVisible()) << "it has no colours";
+  view().setFocus();
+  type('a'); // navigate
+  type('3'); // from +y
+  wait(300);
+  pointAt(onScreen(Vec3(0.0295, 0, 0)));
+  press(), release();
+  EXPECT_EQ(selected(), rowOf("slice"));
+  type('s');
+  wait(200);
+  pointAt(inView({10, 10}));
+  press(), release();
+  EXPECT_EQ(selected(), rowOf("mesh"));
+  drag(inView({0, 0}), inView({60, 20}));
+  clickRow("scale", true);
+  drag(inView({0, 0}), inView({-60, -20}));
+  EXPECT_EQ(selected(), rowOf("scale")) << "a drag turns the camera and selects nothing";
+}
+
 TEST_F(Inspecting, SetsRangeAndMapOfTheSlice) {
   if (IsSkipped()) return;
   begin(icosphere(kRadius, 24));
@@ -131,6 +173,65 @@ TEST_F(Inspecting, SetsRangeAndMapOfTheSlice) {
   type('z', kControl);
   ASSERT_TRUE(waitUntil([&] { return !scale().range; }, 3000)) << "undone";
   EXPECT_TRUE(waitUntil([&] { return find<QDoubleSpinBox>("range_low")->value() < -3; }, 3000));
+}
+
+TEST_F(Inspecting, KeepsColoursThatAreEditedBeforeOlderEditsAreDone) {
+  if (IsSkipped()) return;
+  begin(icosphere(kRadius, 24));
+  view().setFocus();
+  type('s');
+  auto* bands = find<QSpinBox>("color_bands");
+  std::vector<int> seen;
+  QTimer look;
+  QObject::connect(&look, &QTimer::timeout, [&] { seen.push_back(bands->value()); });
+  for (int count = 2; count <= 30; ++count) bands->setValue(count); // they outrun the edits
+  look.start(0);
+  ASSERT_TRUE(waitUntil([&] { return edits().status().done == 1; }, 5000));
+  wait(200);
+  for (const int count : seen) ASSERT_EQ(count, 30);
+  EXPECT_EQ(scaleOf(edits().scene()->scene.colors, "slice").bands, 30);
+}
+
+TEST_F(Inspecting, DrawsTheGapOfTheFreeTipAndItsLength) {
+  if (IsSkipped()) return;
+  begin(icosphere(kRadius, 24));
+  clickAction("desk_feel");
+  clickAction("tool_feel"); // the free tip
+  show(Layer::scale, false);
+  // Length on the gap's label [mm]; absent: no label.
+  const auto gap = [&]() -> std::optional<double> {
+    vtkRendererCollection* renderers = view().renderWindow()->GetRenderers();
+    for (int r = 0; r < renderers->GetNumberOfItems(); ++r) {
+      auto* renderer = static_cast<vtkRenderer*>(renderers->GetItemAsObject(r));
+      vtkPropCollection* props = renderer->GetViewProps();
+      for (int i = 0; i < props->GetNumberOfItems(); ++i) {
+        auto* text = vtkTextActor::SafeDownCast(props->GetItemAsObject(i));
+        if (text == nullptr || !text->GetVisibility() || text->GetInput() == nullptr) continue;
+        const QString words = QString::fromUtf8(text->GetInput()).trimmed();
+        if (words.endsWith(" mm")) return words.chopped(3).toDouble();
+      }
+    }
+    return std::nullopt;
+  };
+  const auto height = [&] { return 1e3 * (feel().sample().tip.norm() - kRadius); };
+  ASSERT_GT(height(), 2);
+  ASSERT_TRUE(waitUntil([&] { return gap().has_value(); }, 5000)) << "beyond the band";
+  EXPECT_NEAR(*gap(), height(), 0.06);
+  keepPicture("gap");
+  while (height() > 1.2) wheelAt(inView({0, 0}), 1), wait(60);
+  wait(150);
+  ASSERT_TRUE(gap().has_value()) << "within the band";
+  EXPECT_NEAR(*gap(), height(), 0.06);
+  show(Layer::tip, false);
+  wait(100);
+  EXPECT_FALSE(gap()) << "it belongs to the tool";
+  show(Layer::tip, true);
+  for (int i = 0; i < 20 && !feel().sample().contact; ++i) wheelAt(inView({0, 0}), 1), wait(60);
+  ASSERT_TRUE(feel().sample().contact);
+  EXPECT_TRUE(waitUntil([&] { return !gap(); }, 3000));
+  clickAction("tool_press");
+  wait(300);
+  EXPECT_FALSE(gap()) << "this tool places the tip itself";
 }
 
 TEST_F(Inspecting, MeasuresTheSideOfABoxByThreeClicks) {
@@ -210,9 +311,10 @@ TEST_F(Inspecting, PinsAPointThatStaysAndIsExported) {
   EXPECT_EQ(pins()[2].name, "D") << "C is gone";
   EXPECT_FALSE(find<QPushButton>("pin_remove")->isEnabled()) << "nor is another selected";
   const std::filesystem::path table = folder_ / "pins.csv";
+  wait(200); // the list has shrunk, and the buttons below it move
   answerWithPath(table);
   clickOn("pins_export");
-  ASSERT_TRUE(waitUntil([&] { return std::filesystem::exists(table); }, 5000));
+  ASSERT_TRUE(waitUntil([&] { return std::filesystem::exists(table); }, 10000));
   EXPECT_EQ(readFile(table).substr(0, 6), "pin,x ");
   view().setFocus();
   type('z', kControl);

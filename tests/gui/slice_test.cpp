@@ -3,10 +3,13 @@
 
 #include "app/gui/toolkit/plot.h"
 #include "core/csv.h"
+#include "geometry/atlas/texture_layout.h"
 #include "geometry/mesh/shapes.h"
 #include "gui/driven_window.h"
 #include "gui/misfits.h"
+#include "support/painted_objects.h"
 #include "visualization/values/camera.h"
+#include "workspace/workspace.h"
 
 namespace patina {
 namespace {
@@ -18,12 +21,13 @@ class SliceWindowTest : public DrivenWindow {
   void SetUp() override {
     DrivenWindow::SetUp();
     if (IsSkipped()) return;
-    ASSERT_TRUE(open(saved(icosphere(kBallRadius, 24), "ball.obj")));
+    ASSERT_TRUE(open(body()));
     show(Layer::tip, false);
     clickAction("desk_analyse");
-    if (!find<QToolButton>("slice_handle")->isVisible()) clickOn("slice");
+    if (!find<QToolButton>("slice_handle")->isVisible()) clickRow("slice");
     wait(200);
   }
+  virtual std::filesystem::path body() { return saved(icosphere(kBallRadius, 24), "ball.obj"); }
   ClipPlane plane() { return view().view().slicePlane().value(); }
   void typeOver(QWidget& field, const QString& text) {
     click(field);
@@ -130,6 +134,65 @@ TEST_F(SliceWindowTest, GivesTheHistogramOfItsDistances) {
     if (std::abs(row[0]) > 0.002) continue; // The band is complete near the surface.
     EXPECT_NEAR(row[2], ring, 0.15 * ring) << row[0];
   }
+}
+
+constexpr double kRelief = 1e-3;
+
+// The ball is raised by a baked relief of constant height.
+class SliceOfReliefTest : public SliceWindowTest {
+  std::filesystem::path body() override {
+    Scene scene;
+    scene.objects.push_back(objectOf(icosphere(kBallRadius, 24)));
+    scene.field.resolution = 100;
+    scene.relief = {.mode = ReliefMode::baked, .height = kRelief};
+    const TriangleMesh& mesh = *scene.objects.front().mesh;
+    ObjectPaint paint;
+    paint.layout = textureLayout(mesh, 256);
+    paint.relief = imageOf(mesh, *paint.layout.uvs, 256, 1, [](const Vec3&, float* v) { *v = 1; });
+    setPaint(scene.objects.front(), paint);
+    saveWorkspace(scene, folder_ / "raised");
+    return folder_ / "raised";
+  }
+};
+
+TEST_F(SliceOfReliefTest, ReadsOneFieldInTheStatusLineThePlotsAndThePicture) {
+  if (IsSkipped()) return;
+  const double raised = kBallRadius + kRelief;
+  clickOn("line_profile");
+  drag(screenOf(plane().origin + Vec3(0.029, 0, 0)), screenOf(plane().origin + Vec3(0.033, 0, 0)));
+  wait(300);
+  const CsvTable table =
+      savedTable("line_profile_window", {"s [m]", "x [m]", "y [m]", "z [m]", "phi [m]"});
+  std::size_t known = 0;
+  for (const auto& row : table.rows) {
+    if (!std::isfinite(row[4])) continue;
+    ++known;
+    EXPECT_NEAR(row[4], Vec3(row[1], row[2], row[3]).norm() - raised, 1e-4);
+  }
+  EXPECT_GT(known, 100U);
+  find<QWidget>("line_profile_window")->close();
+  clickOn("line_profile");
+
+  view().setFocus();
+  type('3'); // from +y, across the slice
+  wait(300);
+  pointAt(screenOf(plane().origin + Vec3(0.0305, 0, 0)));
+  auto* picked = find<QLabel>("picked");
+  ASSERT_TRUE(waitUntil([&] { return picked->text().startsWith("Slice"); }, 3000));
+  const auto front = view().frontUnderPointer();
+  ASSERT_TRUE(front);
+  EXPECT_NEAR(picked->text().section("distance ", 1).section(' ', 0, 0).toDouble(),
+              1e3 * (front->point.norm() - raised), 0.1);
+  // The line at distance 0 is drawn at the same place.
+  const auto darkest = [&](double radius) {
+    const QImage image = view().grabFramebuffer();
+    const QPoint at = view().mapFromGlobal(screenOf(plane().origin + Vec3(0, 0, radius)));
+    int least = 255;
+    for (int y = -2; y <= 2; ++y) least = std::min(least, qGray(image.pixel(at + QPoint(0, y))));
+    return least;
+  };
+  EXPECT_LT(darkest(raised), 90);
+  EXPECT_GT(darkest(kBallRadius), 110);
 }
 
 } // namespace

@@ -117,7 +117,7 @@ TEST_F(Strokes, LetterWIsTheSameOnAMillionTrianglesAndPassesEveryPixel) {
 // Every frame after the first one with paint shows paint.
 TEST_F(Strokes, NoFrameIsUnpaintedWhenAStrokeEnds) {
   ASSERT_TRUE(open(saved(icosphere(0.03, 40), "sphere.ply")));
-  find<QCheckBox>(QStringLiteral("tip"))->setChecked(false);
+  show(Layer::tip, false);
   type(QStringLiteral("p"));
   ASSERT_TRUE(waitUntil([&] { return !edits().thread().busy(); }));
   wait(300);

@@ -173,8 +173,8 @@ void Tutorial::lookInside() {
   type(QStringLiteral("7"));
   const auto pictures = [this] { return view().grabFramebuffer(); };
   const auto tick = [this](const char* name) {
-    clickOn(name);
-    EXPECT_TRUE(find<QCheckBox>(name)->isChecked()) << name;
+    clickRow(name);
+    EXPECT_TRUE(isShown(name)) << name;
     wait(500);
   };
   tick("slice");
@@ -184,6 +184,7 @@ void Tutorial::lookInside() {
   type(QStringLiteral("f"));
   wait(500);
   keepPicture("slice");
+  clickRow("slice", true);
   const QImage before = pictures();
   auto* slider = find<ValueRow>("slice_position")->findChild<QSlider*>();
   const QPoint grip = slider->mapToGlobal(slider->rect().center());
@@ -192,8 +193,8 @@ void Tutorial::lookInside() {
   wait(500);
   EXPECT_NE(pictures(), before);
   for (const char* name : {"slice", "iso"}) {
-    clickOn(name);
-    EXPECT_FALSE(find<QCheckBox>(name)->isChecked()) << name;
+    clickRow(name);
+    EXPECT_FALSE(isShown(name)) << name;
   }
   doubleClickAt(flank_);
   pressIn(0.5);
@@ -203,7 +204,7 @@ void Tutorial::lookInside() {
 }
 
 void Tutorial::ownMesh() {
-  type('1', kControl);
+  type('4', kControl);
   TriangleMesh mesh = icosphere(30, 40);
   mesh.triangles.resize(mesh.triangles.size() - 100); // a hole
   const auto path = saved(mesh, "own.obj");
@@ -228,12 +229,12 @@ void Tutorial::ownMesh() {
 }
 
 void Tutorial::takeHome() {
-  type(QStringLiteral("r"));
+  type('r', kControl);
   EXPECT_TRUE(feel().recording());
   type(QStringLiteral("q"));
   drag(flank_, flank_ + QPoint(60, 0), 1, 40);
   answerWithPath(folder_ / "feel.csv");
-  type(QStringLiteral("r"));
+  type('r', kControl);
   ASSERT_TRUE(soon([&] { return std::filesystem::exists(folder_ / "feel.csv"); }));
   EXPECT_FALSE(feel().recording());
   answerWithPath(folder_ / "scene.patina");

@@ -9,6 +9,7 @@
 #include <QApplication>
 #include <QCheckBox>
 #include <QElapsedTimer>
+#include <QListWidget>
 #include <QMenu>
 #include <QMouseEvent>
 #include <QSettings>
@@ -128,8 +129,17 @@ class WindowTest : public ::testing::Test {
     return window_->findChild<Widget*>(name);
   }
   void trigger(const QString& name) { find<QAction>(name)->trigger(); }
+  // The row of a thing in the list of what is shown.
+  QListWidgetItem* rowOf(const QString& thing) {
+    auto* list = find<QListWidget>("layers");
+    for (int i = 0; i < list->count(); ++i)
+      if (list->item(i)->data(Qt::UserRole) == thing) return list->item(i);
+    return nullptr;
+  }
+  bool isShown(const QString& thing) { return rowOf(thing)->checkState() == Qt::Checked; }
   void show(Layer layer, bool on) {
-    find<QCheckBox>(QString::fromStdString(std::string(name(layer))))->setChecked(on);
+    rowOf(QString::fromStdString(std::string(name(layer))))
+        ->setCheckState(on ? Qt::Checked : Qt::Unchecked);
   }
   void openTab(const QString& name) { find<QToolButton>("tab_" + name)->click(); }
   void setRow(const QString& name, double value) { // in the unit of the row

@@ -10,11 +10,10 @@ namespace patina {
 namespace {
 
 const std::vector<Panel> kPanels{
-    Panel::recovery,   Panel::tool,     Panel::measure,  Panel::brush,  Panel::relief,
-    Panel::touch,      Panel::objects,  Panel::mesh,     Panel::device, Panel::display,
-    Panel::colors,     Panel::paint,    Panel::forces,   Panel::energy, Panel::history,
-    Panel::messages,   Panel::timeline, Panel::findings, Panel::scan,   Panel::recorder,
-    Panel::calibration};
+    Panel::recovery, Panel::tool,     Panel::measure, Panel::brush,    Panel::relief,
+    Panel::touch,    Panel::objects,  Panel::mesh,    Panel::device,   Panel::display,
+    Panel::colors,   Panel::forces,   Panel::energy,  Panel::history,  Panel::messages,
+    Panel::timeline, Panel::findings, Panel::scan,    Panel::recorder, Panel::calibration};
 const std::vector<Command> kCommands{Command::save, Command::save_as, Command::record,
                                      Command::undo, Command::redo,    Command::paint};
 
@@ -42,7 +41,7 @@ std::vector<Command> enabledIn(const WindowState& state) {
 WindowState withScene() {
   WindowState state;
   state.content = Content::scene;
-  state.open = true;
+  state.open = state.colored = true;
   return state;
 }
 
@@ -109,6 +108,7 @@ TEST(WindowState, MeasurementsAreShownForTheirToolsAndTheErrorMapsColoursForItsP
   state.tool = {InteractionMode::press, {}};
   EXPECT_FALSE(isThere(Panel::measure, state));
   state.desk = Desk::align;
+  state.colored = true;
   EXPECT_FALSE(isThere(Panel::colors, state));
   state.path = true;
   EXPECT_TRUE(isThere(Panel::colors, state));
@@ -116,9 +116,9 @@ TEST(WindowState, MeasurementsAreShownForTheirToolsAndTheErrorMapsColoursForItsP
 
 TEST(WindowState, ScenePropertiesAreShownForEveryTool) {
   WindowState state = withScene();
-  state.relief = state.paint = true;
+  state.relief = state.colored = true;
   EXPECT_TRUE(isThere(Panel::relief, state));
-  EXPECT_TRUE(isThere(Panel::paint, state));
+  EXPECT_TRUE(isThere(Panel::colors, state));
 }
 
 TEST(WindowState, HistoryIsShownWithItsFirstEditUndoneOrNot) {
@@ -210,7 +210,7 @@ TEST(WindowState, EveryToolIsOnADeskAndIsKeptIfPossible) {
 
 TEST(WindowState, EveryDeskShowsOnlyPanelsOfItsRow) {
   WindowState state = withScene();
-  state.relief = state.paint = true;
+  state.relief = state.colored = true;
   state.undoable = 1;
   for (const DeskRow& row : deskRows()) {
     state.desk = row.desk;

@@ -5,6 +5,7 @@
 #include "integration/painted.h"
 #include "pictures/picture_file.h"
 #include "session/open/session.h"
+#include "support/own_display.h"
 
 namespace patina::test {
 namespace {
@@ -23,6 +24,28 @@ class PaintedWorkspace : public Painted {
     return names;
   }
 };
+
+TEST_F(PaintedWorkspace, RangeOfAPictureReplacesThePercentileOfItsColours) {
+  if (!hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
+  std::filesystem::remove_all(workspace);
+  ASSERT_EQ(run({"scene", "-o", workspace, "--add", box, "--set", "voxel=1mm", "--set",
+                 "paint.size=256", "--set", "colors.stiffness=percentile=20"})
+                .exit,
+            0);
+  paint();
+  const std::vector<std::string> words = {"render",    workspace, "--show",
+                                          "stiffness", "-o",      folder / "p.png"};
+  const auto rangeOf = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    const Json report = runJson(more);
+    const auto& range = report.at("range").asArray();
+    return ValueRange{range[0].asNumber(), range[1].asNumber()};
+  };
+  EXPECT_LT(rangeOf({}).high, 900) << "the percentile leaves out the painted dab";
+  const ValueRange given = rangeOf({"--range", "100,2000"});
+  EXPECT_EQ(given.low, 100);
+  EXPECT_EQ(given.high, 2000);
+}
 
 TEST_F(PaintedWorkspace, InfoNamesLayersStagesReliefAndHistory) {
   const Json plain = runJson({"info", workspace});

@@ -15,6 +15,7 @@
 #include "field/store/surface_field.h"
 #include "geometry/mesh/shapes.h"
 #include "picture/picture_support.h"
+#include "visualization/values/camera.h"
 #include "visualization/view/picture.h"
 #include "visualization/view/png.h"
 
@@ -340,6 +341,32 @@ TEST_F(ScenePicture, FindsTheVisibleVertexNearARay) {
   ASSERT_TRUE(vertex);
   EXPECT_LT((*vertex - Vec3(kMajor, 0, kMinor)).norm(), 1e-9) << "not the one below it";
   EXPECT_FALSE(view_.vertexNear(down, {down.origin + Vec3(0.0005, 0, 0), down.direction}));
+}
+
+// The field's reach of 8 voxels is near 6.9 mm, of which 2 mm is the round step for four lines.
+TEST_F(ScenePicture, SliceHasContourLinesAtRoundDistances) {
+  view_.setSlice({Vec3::UnitZ(), 0.0});
+  setParallel(*view_.renderer().GetActiveCamera(), true);
+  const Pixels pixels = drawn("contours", {Layer::slice}, ViewPreset::plus_z, {1600, 1200});
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  const double per_metre = pixels.height() / 2 / camera.GetParallelScale();
+  // Darkest within a pixel, all colours alike.
+  const auto brightness = [&](double distance) {
+    const double offset = kMajor + kMinor + distance - camera.GetFocalPoint()[0];
+    const int x = static_cast<int>(std::lround(pixels.width() / 2 + per_metre * offset));
+    double least = 255;
+    for (int i = -1; i <= 1; ++i)
+      least = std::min(least, pixels.at(x + i, pixels.height() / 2).mean());
+    return least;
+  };
+  const auto dip = [&](double distance) { // against both sides, as colours have a slope
+    constexpr double kBeside = 4e-4;
+    return 2 * brightness(distance) /
+           (brightness(distance - kBeside) + brightness(distance + kBeside));
+  };
+  constexpr double kStep = 2e-3;
+  for (const int line : {-2, -1, 0, 1, 2}) EXPECT_LT(dip(line * kStep), 0.94) << line;
+  for (const int line : {-2, -1, 0, 1}) EXPECT_GT(dip((line + 0.5) * kStep), 0.97) << line;
 }
 
 TEST_F(ScenePicture, ColoursTheSliceByItsScale) {

@@ -9,6 +9,7 @@
 #include "geometry/mesh/shapes.h"
 #include "picture/picture_support.h"
 #include "support/fresh_folder.h"
+#include "support/small_disk.h"
 #include "visualization/export/export_files.h"
 #include "visualization/view/video.h"
 
@@ -73,6 +74,15 @@ TEST_F(VideoTest, HasAFrameEvery40MillisecondsAndAppearsWhenItIsComplete) {
   EXPECT_EQ(side(14), 322);
   EXPECT_EQ(side(17), 240);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing else";
+}
+
+TEST_F(VideoTest, FailsOnADiskThatIsFullAndLeavesNothing) {
+  for (const std::uintmax_t room : {std::uintmax_t{3000}, std::uintmax_t{20000}}) {
+    const test::SmallDisk full(room);
+    VideoWriter video(view_, pressingDown(), figure_, folder_ / "press.ogv");
+    EXPECT_THROW(while (video.writeNext()){}, FileError) << room;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
 TEST_F(VideoTest, IsNotLeftBehindWhenItIsCancelled) {

@@ -181,7 +181,7 @@ int runRender(const RenderOptions& options, Console& console) {
     view.setBand(band);
     view.setMesh(compiled->mesh);
     view.setPaint(compiled->scene);
-    view.setField(compiled->built.field);
+    view.setField(compiled->paint.field); // with baked relief
     if (const auto radius = compiled->scene.haptics.tip_radius) {
       view.setTipRadius(*radius);
       view.setIso(*radius);

@@ -10,7 +10,6 @@
 #include "app/cli/input/scene_options.h"
 #include "app/cli/input/workspace_place.h"
 #include "app/cli/output/reports.h"
-#include "authoring/images/apply_image.h"
 #include "core/disk_error.h"
 #include "core/error.h"
 #include "core/numbers.h"
@@ -20,6 +19,7 @@
 #include "pictures/picture_file.h"
 #include "scan/scan_files.h"
 #include "scene/edit.h"
+#include "session/edit/lay_picture.h"
 #include "session/store/attach_scan.h"
 #include "session/store/replay.h"
 #include "session/store/workspace_storage.h"
@@ -124,11 +124,8 @@ class ObjectAdder {
   std::unordered_map<std::string, SceneObject> read_; // key: file
 };
 
-struct ImageEdit {
-  std::size_t object = 0;
+struct ImageEdit : PictureEdit {
   std::filesystem::path file;
-  PictureTarget target = PictureTarget::color;
-  Projection projection = Projection::z;
 };
 
 bool setWord(ImageEdit& image, const std::string& word) {
@@ -164,8 +161,7 @@ ImageEdit imageOf(const Scene& scene, const std::string& text) {
     throw Error("--image: '" + text + "' is not OBJECT=FILE[,color|relief][,mapped|x|y|z]");
   ImageEdit image;
   image.object = indexOf(scene, text.substr(0, equals), "--image");
-  const TriangleMesh& mesh = *scene.objects[image.object].mesh;
-  if (mesh.corner_uvs.size() == mesh.triangles.size()) image.projection = Projection::mapped;
+  image.projection = usualProjection(*scene.objects[image.object].mesh);
   image.file = withoutWords(text.substr(equals + 1), image);
   return image;
 }
@@ -185,10 +181,8 @@ void layImages(Scene& scene, const std::vector<std::string>& texts, Console& con
     const ImageEdit& image = images[i];
     console.progress().report(static_cast<double>(i) / static_cast<double>(images.size()),
                               "images");
-    surface = paintSurfaceOf(*compiled, scene, surface, true, console.progress());
     try {
-      scene.objects[image.object].paint =
-          laid(*surface, scene, image.object, pictures[i], image.projection, image.target);
+      layPicture(scene, *compiled, image, pictures[i], surface, console.progress());
     } catch (const FileError&) {
       throw;
     } catch (const Error& error) {

@@ -1,5 +1,7 @@
 #include "app/gui/control/desk_controller.h"
 
+#include <algorithm>
+
 #include <QSettings>
 
 namespace patina {
@@ -69,6 +71,7 @@ void remember(const WindowGeometry& place) {
 
 DeskController::DeskController(const Parts& parts, QObject* parent)
     : QObject(parent), at_(parts), group_(new QActionGroup(this)) {
+  int key = Qt::Key_1;
   for (const DeskRow& row : deskRows()) {
     layouts_[row.desk] = usualLayout(row.desk);
     tools_[row.desk] = row.tool;
@@ -77,7 +80,7 @@ DeskController::DeskController(const Parts& parts, QObject* parent)
     action->setCheckable(true);
     action->setData(static_cast<int>(row.desk));
     action->setChecked(row.desk == desk_);
-    action->setShortcut(Qt::CTRL | row.key);
+    action->setShortcut(Qt::CTRL | key++);
     action->setToolTip(row.tip);
     connect(action, &QAction::triggered, this, [this, desk = row.desk] { choose(desk); });
   }
@@ -129,6 +132,15 @@ void DeskController::open(Panel panel) {
     layouts_[desk_].page = panel;
     foldBottomPanel(false);
   }
+}
+
+void DeskController::show(Panel panel) {
+  const auto has = [panel](const DeskRow& row) {
+    return std::find(row.panels.begin(), row.panels.end(), panel) != row.panels.end();
+  };
+  const auto other = std::find_if(deskRows().begin(), deskRows().end(), has);
+  if (!has(rowOf(desk_)) && other != deskRows().end()) choose(other->desk);
+  open(panel);
 }
 
 void DeskController::foldSidePanel(bool folded) {

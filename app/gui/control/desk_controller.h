@@ -54,6 +54,7 @@ class DeskController : public QObject {
 
   void choose(Desk desk);
   void open(Panel panel); // Brings it to the front, in either panel.
+  void show(Panel panel); // The same, on another desk if this one lacks it.
   void foldSidePanel(bool folded);
   void foldBottomPanel(bool folded);
   void setNarrow(bool narrow); // Folds the side panel unless it is opened by hand.

@@ -121,6 +121,7 @@ void SaveController::exportDialog() {
   dialog.setOption(QFileDialog::DontConfirmOverwrite);
   dialog.setAcceptMode(QFileDialog::AcceptSave);
   dialog.setFileMode(QFileDialog::AnyFile);
+  beginInLastFolder(dialog);
   dialog.selectFile(name().section('.', 0, 0) + QStringLiteral("-paraview"));
   if (dialog.exec() == QDialog::Accepted) exportTo(dialog.selectedFiles().front());
 }
@@ -385,8 +386,11 @@ void DocumentController::openDialog(bool adds) {
   dialog->setNameFilters({tr("Meshes, volumes and workspaces (*.obj *.ply *.stl *.vti *.OBJ *.PLY "
                              "*.STL *.VTI)"),
                           tr("All files (*)")});
-  connect(dialog, &WorkspaceFileDialog::chosen, this, [this, adds](const QString& path) {
+  connect(dialog, &WorkspaceFileDialog::chosen, this, [this, adds, dialog](const QString& path) {
     LoadRequest request = requestFor(path);
+    request.options.up = dialog->up();
+    request.unit_chosen = request.options.unit_chosen = dialog->unit().has_value();
+    request.options.unit = dialog->unit().value_or(MeshUnit::mm);
     request.adds = adds && at_.edits.scene() != nullptr;
     if (request.adds)
       open(request);
@@ -394,6 +398,29 @@ void DocumentController::openDialog(bool adds) {
       openRequested(request);
   });
   dialog->open();
+}
+
+void DocumentController::layPictureDialog(std::size_t object) {
+  const auto asked = [this, object](const QString& path) {
+    const auto& scene = at_.edits.scene();
+    if (!scene || object >= scene->scene.objects.size()) return;
+    const SceneObject& laid_on = scene->scene.objects[object];
+    const bool mapped = usualProjection(*laid_on.mesh) == Projection::mapped;
+    const auto lay = [this, path, object](PictureTarget target, Projection projection) {
+      at_.edits.layPicture(path.toStdString(), {object, target, projection},
+                           [this, path](const EditOutcome& outcome) {
+                             if (outcome.problem.empty()) return;
+                             showProblem(&at_.window, tr("The picture cannot be laid"),
+                                         QString::fromStdString(outcome.problem),
+                                         tr("Choose another picture, or another way to lay it."));
+                           });
+    };
+    askPicture(&at_.window, QFileInfo(path).fileName(), mapped, lay);
+  };
+  askForPath(&at_.window, tr("Lay a picture on the object"), QFileDialog::ExistingFile,
+             tr("Pictures (*.png *.jpg *.jpeg *.tif *.tiff *.bmp *.exr *.hdr *.webp);;All files "
+                "(*)"),
+             asked);
 }
 
 void DocumentController::take(OpenedEditor& opened) {

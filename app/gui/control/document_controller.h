@@ -105,7 +105,8 @@ class DocumentController : public QObject {
   void open(const LoadRequest& request);
   void openRequested(const LoadRequest& request); // Unless the user cancels to keep unsaved edits.
   void openDialog(bool adds);
-  void cancel(); // Cancels loading, or else the running edit.
+  void layPictureDialog(std::size_t object); // Asks for a picture and how to lay it.
+  void cancel();                             // Cancels loading, or else the running edit.
   void close() { // Cancels loading; a thread that reads a file may go on.
     closing_ = true;
     loader_.cancel();

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/numbers.h"
+#include "pictures/picture_file.h"
 #include "scene/paint/grey_relief.h"
 #include "scene/scene.h"
 
@@ -189,6 +190,11 @@ void EditController::previewValues() {
       });
 }
 
+void EditController::undo() {
+  previewValues(); // Includes changes since the last tick.
+  thread_.undo();
+}
+
 void EditController::applyObjects() {
   if (!scene_) return;
   setUnsaved(true);
@@ -215,6 +221,13 @@ void EditController::applyObjects() {
       });
 }
 
+// The empty request ends the collecting of values.
+void EditController::changeValues(std::function<void(Scene&)> change) {
+  previewValues();
+  thread_.previewValues(std::move(change));
+  thread_.apply("", [](const CompiledScene&) { return nullptr; });
+}
+
 void EditController::changeColors(const std::string& thing, const ColorScale& scale) {
   setUnsaved(true);
   thread_.previewValues(
@@ -233,6 +246,22 @@ void EditController::addObjects(const std::vector<SceneObject>& objects, EditThr
       "add " + objects.front().name,
       [objects](const CompiledScene& now) {
         return std::make_shared<const Scene>(withAdded(now.scene, objects));
+      },
+      false, std::move(done));
+}
+
+void EditController::layPicture(const std::filesystem::path& file, const PictureEdit& edit,
+                                EditThread::Done done) {
+  thread_.apply(
+      "lay " + file.filename().string(),
+      [file, edit](const CompiledScene& now) {
+        const Picture picture = readPicture(file);
+        auto scene = std::make_shared<Scene>(now.scene);
+        if (edit.object >= scene->objects.size()) throw Error("the object is no longer there");
+        std::shared_ptr<const PaintSurface> surface;
+        Progress progress;
+        patina::layPicture(*scene, now, edit, picture, surface, progress);
+        return scene;
       },
       false, std::move(done));
 }

@@ -15,6 +15,7 @@
 #include "app/gui/panels/object_list.h"
 #include "app/gui/state/window_state.h"
 #include "session/edit/edit_thread.h"
+#include "session/edit/lay_picture.h"
 
 namespace patina {
 
@@ -37,12 +38,20 @@ class EditController : public QObject {
   const EditStatus& status() const { return status_; }
   std::optional<TaskProgress> work() const; // Progress of an edit that takes long.
   bool unsaved() const { return unsaved_; } // Includes edits that are not sent yet.
+  // Steps that undo() can take back, with values that are no edit yet.
+  std::size_t undoable() const {
+    return status_.done + (values_edited_ || values_pending_ > 0 || status_.previews ? 1 : 0);
+  }
+  void undo();
   bool hasRelief() const { return has_relief_; }
 
   // Sends the values that panels have changed; called on each tick of the window.
   void previewValues();
+  void changeValues(std::function<void(Scene&)> change); // One step of the history.
   void changeColors(const std::string& thing, const ColorScale& scale);
   void addObjects(const std::vector<SceneObject>& objects, EditThread::Done done);
+  void layPicture(const std::filesystem::path& file, const PictureEdit& edit,
+                  EditThread::Done done);
   void setTool(const ToolChoice& choice) {
     paints_relief_ = choice == ToolChoice{InteractionMode::paint, Tool::relief};
     showRelief();

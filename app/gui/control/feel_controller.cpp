@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include <QDir>
 #include <QFileDialog>
 #include <QMessageBox>
 
 #include "app/gui/loading/load_dialogs.h"
+#include "app/gui/toolkit/card.h"
 #include "core/error.h"
 #include "haptics/catalog/device_catalog.h"
 
@@ -123,8 +125,10 @@ void FeelController::checkDevice() {
   if (held_back == held_back_) return;
   held_back_ = held_back;
   // A message replaces the warning when it no longer holds.
-  emit notified(held_back.isEmpty() ? Message{tr("The device gives force again")}
-                                    : Message{held_back, true});
+  Message message{held_back, true};
+  if (held_back.isEmpty()) message = {tr("The device gives force again")};
+  if (!controls_->enabled) message.action = {tr("Switch on"), [this] { setForce(true); }};
+  emit notified(message);
 }
 
 void FeelController::collect() {
@@ -161,6 +165,7 @@ void FeelController::startLog(const std::filesystem::path& path) {
 void FeelController::startRecording() {
   try {
     recording_.start(servo_.dropped());
+    emit notified({tr("Recording the forces; Record forces again stops and saves them")});
   } catch (const std::exception& error) {
     showProblem(&at_.window, tr("The recording cannot be started"),
                 QString::fromStdString(error.what()), tr("Free some disk space."));
@@ -197,10 +202,11 @@ bool FeelController::confirmRecording() {
 }
 
 bool FeelController::saveTable(const std::function<void(const std::filesystem::path&)>& save) {
-  const QString path =
-      QFileDialog::getSaveFileName(&at_.window, tr("Save the recorded forces"),
-                                   QStringLiteral("feel.csv"), tr("Tables (*.csv)"));
+  const QString path = QFileDialog::getSaveFileName(
+      &at_.window, tr("Save the recorded forces"),
+      QDir(lastFolder()).filePath(QStringLiteral("feel.csv")), tr("Tables (*.csv)"));
   if (path.isEmpty()) return false;
+  rememberFolder(path);
   try {
     save(path.toStdString());
   } catch (const std::exception& error) {

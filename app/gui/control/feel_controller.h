@@ -67,11 +67,15 @@ class FeelController : public QObject {
   // Why the device gives no force, in one line; empty: it does.
   const QString& inhibitText() const { return held_back_; }
   // User settings: force off, or only while a button of the device is held.
-  void setForce(bool on) { controls_->enabled = on; }
+  void setForce(bool on) {
+    controls_->enabled = on;
+    emit forceSet(on);
+  }
   void setNeedsButton(bool on) {
     needs_button_ = on;
     if (notes_) notes_->requires_deadman = on;
   }
+  bool hasOwnHand() const { return notes_ != nullptr; } // A device moves the tip.
   const ToolSample& sample() const { return sample_; }
   void open(const Scene& scene, const Vec3& start);
   void place(const Scene& scene, const Vec3& tip); // Moves the tip without a path between.
@@ -94,6 +98,7 @@ class FeelController : public QObject {
   void collected(const std::vector<patina::ToolSample>& samples); // The list may be empty.
   void failed(const QString& problem);
   void changed();
+  void forceSet(bool on);
   void notified(const patina::Message& message);
 
  private:

@@ -17,10 +17,11 @@ std::size_t pointsOf(MeasureKind kind) {
 }
 
 Measurement measured(const CompiledScene& scene, MeasureKind kind,
-                     const std::vector<MeasuredPoint>& at, double radius) {
+                     const std::vector<MeasuredPoint>& at, double radius,
+                     const Progress& progress) {
   switch (kind) {
   case MeasureKind::distance:
-    return measureDistance(scene, at[0], at[1]);
+    return measureDistance(scene, at[0], at[1], progress);
   case MeasureKind::angle:
     return measureAngle(at[0], at[1], at[2]);
   case MeasureKind::sphere:
@@ -46,7 +47,7 @@ MeasureController::MeasureController(const Parts& parts, QObject* parent)
     points_.clear();
     show();
   });
-  connect(&at_.panel, &MeasurePanel::cleared, this, &MeasureController::clear);
+  connect(&at_.panel, &MeasurePanel::cleared, this, [this] { running_ > 0 ? stop() : clear(); });
   connect(&at_.panel, &MeasurePanel::pinRemoved, this, &MeasureController::removePin);
   connect(&at_.panel, &MeasurePanel::exportRequested, this, &MeasureController::exportPins);
 }
@@ -69,9 +70,10 @@ void MeasureController::setScene(std::shared_ptr<const CompiledScene> scene, boo
 }
 
 void MeasureController::click(const QPoint& pixel) {
-  if (!scene_) return;
+  const bool measures = mode_ == InteractionMode::measure;
+  if (!scene_ || !(measures || mode_ == InteractionMode::pin)) return;
   const auto front = at_.view.frontAt(pixel);
-  if (mode_ == InteractionMode::pin) {
+  if (!measures) {
     if (front) pin(*front);
     return;
   }
@@ -92,18 +94,18 @@ void MeasureController::measure(const MeasuredPoint& point) {
 // A path over a large mesh takes seconds, so the window goes on meanwhile.
 void MeasureController::finish(std::vector<MeasuredPoint> points) {
   auto* job = new Background(this);
+  at_.panel.setBusy(++running_ > 0);
   job->start([this, job, points = std::move(points), scene = scene_, kind = at_.panel.kind(),
-              radius = at_.panel.patchRadius(),
-              generation = generation_](Progress&, const Background::Post& post) {
+              radius = at_.panel.patchRadius()](Progress& progress, const Background::Post& post) {
     Measurement found;
     try {
-      found = measured(*scene, kind, points, radius);
+      found = measured(*scene, kind, points, radius, progress);
     } catch (const std::exception& error) {
       found = {error.what(), 0, {}, {}, true};
     }
-    post(true, [this, job, found, generation] {
+    post(true, [this, job, found] {
       job->deleteLater();
-      if (generation != generation_) return; // its surface is gone
+      at_.panel.setBusy(--running_ > 0);
       if (found.failed) return notified({tr("Measure: %1").arg(shownText(found.words)), true});
       done_.push_back(found);
       show();
@@ -111,8 +113,15 @@ void MeasureController::finish(std::vector<MeasuredPoint> points) {
   });
 }
 
+void MeasureController::stop() {
+  for (Background* job : findChildren<Background*>())
+    job->isIdle() ? delete job : job->discardResult();
+  running_ = 0;
+  at_.panel.setBusy(false);
+}
+
 void MeasureController::clear() {
-  ++generation_;
+  stop();
   points_.clear();
   done_.clear();
   at_.panel.setNext(0);

@@ -39,6 +39,7 @@ class MeasureController : public QObject {
   void pin(const Front& front);
   void measure(const MeasuredPoint& point);
   void finish(std::vector<MeasuredPoint> points);
+  void stop(); // Results of running measurements are dropped.
   void clear();
   void removePin(int row);
   void exportPins();
@@ -50,7 +51,7 @@ class MeasureController : public QObject {
   std::shared_ptr<const CompiledScene> scene_;
   std::vector<MeasuredPoint> points_; // Clicked so far.
   std::vector<Measurement> done_;
-  int generation_ = 0; // Results of an older one are dropped.
+  int running_ = 0; // measurements
 };
 
 } // namespace patina

@@ -9,6 +9,7 @@
 #include "app/gui/state/tool_choice.h"
 #include "app/gui/toolkit/words.h"
 #include "core/numbers.h"
+#include "scene/surface_pick.h"
 
 namespace patina {
 namespace {
@@ -77,6 +78,43 @@ void ProbeController::refresh() {
   const QString words =
       front ? probeWords(scene_->scene, front->layer, probeAt(*scene_, front->point)) : QString();
   if (words != std::exchange(words_, words)) emit underPointer(words);
+}
+
+void GapFinder::setScene(std::shared_ptr<const CompiledScene> scene) {
+  if (!scene || !scene_ || scene->mesh != scene_->mesh) {
+    jobs_.discardResult();
+    tree_ = nullptr;
+    asked_ = false;
+    last_face_ = -1;
+  }
+  scene_ = std::move(scene);
+}
+
+std::optional<Vec3> GapFinder::nearestTo(const ToolSample& sample) {
+  if (!scene_ || sample.contact || sample.attracted) return std::nullopt;
+  const SurfaceField& field = *scene_->paint.field;
+  const GridSample at = FieldSampler(field, scene_->scene.sampler).at(sample.tip);
+  if (at.region == FieldRegion::interior || at.phi < 0) return std::nullopt;
+  if (at.region == FieldRegion::band && at.gradient.norm() > 0)
+    return sample.tip - at.phi * at.gradient.normalized();
+  if (!tree_) {
+    if (std::exchange(asked_, true)) return std::nullopt;
+    jobs_.start([this, scene = scene_](Progress& progress, const Background::Post& post) {
+      std::shared_ptr<const TriangleTree> tree;
+      try {
+        tree = std::make_shared<const TriangleTree>(hapticTriangles(*scene, progress).mesh);
+      } catch (const std::exception&) { // Cancelled, or too large: there is no line.
+      }
+      post(true, [this, tree] { tree_ = tree; });
+    });
+    return std::nullopt;
+  }
+  const ClosestPoint closest = tree_->closestPoint(sample.tip, last_face_);
+  last_face_ = closest.surface.face;
+  if (!(closest.distance > 0)) return std::nullopt;
+  const Vec3 way = (closest.point - sample.tip) / closest.distance;
+  // Baked relief is before or behind the mesh.
+  return firstSurfaceAlong(field, sample.tip, way).value_or(closest.point);
 }
 
 } // namespace patina

@@ -58,17 +58,15 @@ std::string CameraHand::problem() const {
 }
 
 ViewController::ViewController(const Parts& parts, QObject* parent) : QObject(parent), at_(parts) {
-  connect(&at_.display, &DisplayPanel::layerToggled, this, [this](Layer layer, bool on) {
-    view().show(layer, on);
-    offerColors();
-  });
-  view().show(Layer::scale, at_.display.shown(Layer::scale));
+  connect(&at_.display, &DisplayPanel::shownChanged, this, &ViewController::show);
+  connect(&at_.display, &DisplayPanel::selectionChanged, this, &ViewController::offerColors);
+  connect(&at_.view, &SceneWidget::clicked, this, &ViewController::select);
+  view().show(Layer::scale, at_.display.isShown("scale"));
   connectSlice();
   connect(&at_.display, &DisplayPanel::isoMoved, this, [this](double iso) {
     iso_ = iso;
     view().setIso(iso);
   });
-  connect(&at_.display.clip(), &QCheckBox::toggled, this, &ViewController::clip);
   connect(&at_.display, &DisplayPanel::clipTurned, this, &ViewController::turnClip);
   connect(&at_.view, &SceneWidget::clipMoved, this, &ViewController::setClip);
   connect(&at_.paint, &PaintDisplay::showRequested, this,
@@ -85,6 +83,21 @@ ViewController::ViewController(const Parts& parts, QObject* parent) : QObject(pa
             ++colors_pending_;
             emit colorsEdited(thing, scale);
           });
+}
+
+void ViewController::show(const std::string& thing, bool on) {
+  if (thing == "clip") return clip(on);
+  if (thing == "paint") return at_.paint.setOn(on);
+  view().show(*parseLayers(thing).begin(), on);
+}
+
+void ViewController::select(const QPoint& pixel) {
+  if (!at_.view.isNavigating()) return;
+  const auto front = at_.view.frontAt(pixel);
+  if (!front) return;
+  const bool colored = front->layer == Layer::mesh && at_.display.isShown("stability");
+  const bool painted = front->layer == Layer::mesh && at_.paint.shown();
+  at_.display.select(colored ? "stability" : painted ? "paint" : std::string(name(front->layer)));
 }
 
 void ViewController::connectSlice() {
@@ -115,14 +128,13 @@ void ViewController::showProfile(const Vec3& from, const Vec3& to, bool complete
   view().setLine(std::pair(from, to));
   at_.view.frames().cameraMoved();
   if (!complete || !scene_) return;
-  const auto profile =
-      profileAlong(FieldSampler(*scene_->built.field, Sampler::high), from, to, 401);
+  const auto profile = profileAlong(FieldSampler(*shownField(), Sampler::high), from, to, 401);
   showPlot(*at_.view.window(), profilePlot(profile));
 }
 
 void ViewController::showHistogram() {
   if (!scene_) return;
-  const SurfaceField& field = *scene_->built.field;
+  const SurfaceField& field = *shownField();
   showPlot(*at_.view.window(), histogramPlot(planeOf(field, slice_), field.grid.voxel));
 }
 
@@ -177,15 +189,18 @@ void ViewController::showScene(const SceneChange& change) {
   const CompiledScene& scene = *change.scene;
   const bool edited = change.step == SceneChange::Step::edited;
   if (!edited) showStability(nullptr);
+  const bool new_field = change.surface || !scene_ || shownField() != scene.paint.field;
+  scene_ = change.scene;
   if (change.surface) {
     view().setMesh(scene.mesh);
-    view().setField(scene.built.field);
     at_.display.lineProfile().setChecked(false);
-    at_.view.setField(scene.built.field);
+    at_.view.setField(scene.built.field); // Brushes act on the surface without relief.
     at_.mesh.showScene(scene);
-    at_.display.setField(scene.built.field.get());
   }
-  scene_ = change.scene;
+  if (new_field) {
+    view().setField(shownField());
+    at_.display.setField(shownField().get());
+  }
   showPaint(scene.scene);
   if (!edited) colors_pending_ = 0;
   takeColors();
@@ -216,20 +231,11 @@ void ViewController::colorsDone() {
 }
 
 void ViewController::offerColors() {
-  std::vector<std::string> things;
-  const auto add = [&](Layer layer) {
-    if (at_.display.shown(layer)) things.emplace_back(name(layer));
-  };
-  if (aligning_) {
-    things = {"error"};
-  } else if (content_ == Content::scene) {
-    add(Layer::slice);
-    const auto paint = at_.paint.shown();
-    if (paint && *paint != PaintQuantity::color) things.emplace_back(name(layerOf(*paint)));
-    add(Layer::iso);
-    add(Layer::mesh);
-  }
-  at_.colors.setThings(things);
+  std::string thing = aligning_ ? "error" : at_.display.selected();
+  const auto paint = at_.paint.shown();
+  if (thing == "paint" && paint) thing = name(layerOf(*paint));
+  at_.colors.setThing(content_ == Content::scene ? thing : "");
+  emit coloredChanged();
 }
 
 void ViewController::showPaint(const Scene& scene) {
@@ -238,8 +244,8 @@ void ViewController::showPaint(const Scene& scene) {
   for (std::size_t i = 0; i < kPaintQuantities; ++i)
     if (view().hasPaint(static_cast<PaintQuantity>(i)))
       available.push_back(static_cast<PaintQuantity>(i));
-  has_paint_ = !available.empty();
   at_.paint.setAvailable(available);
+  at_.display.setPaint(!available.empty());
 }
 
 void ViewController::showStability(const std::shared_ptr<const SurfaceStability>& stability) {
@@ -289,14 +295,12 @@ void ViewController::saveFigure(const Figure& figure) {
       tr("PNG pictures (*.png);;TIFF pictures (*.tif *.tiff);;SVG drawings (*.svg);;PDF documents "
          "(*.pdf)"),
       QStringLiteral("patina.png"), [this, figure](const QString& path) {
-        FigureDialog::rememberFolder(path);
         drawOutside([&] {
           patina::saveFigure(view(), figure, path.toStdString());
           emit notified({tr("Saved %1, %2").arg(path, sizeInWords(figure)), false, path});
         });
       });
   dialog->setObjectName(QStringLiteral("figure_file"));
-  dialog->setDirectory(FigureDialog::folder());
   dialog->open();
 }
 
@@ -319,7 +323,7 @@ std::unique_ptr<SceneView> ViewController::copyOfView() {
   copy->setBackgroundStyle(view().backgroundStyle());
   copy->showCube(true);
   copy->setMesh(scene_->mesh);
-  copy->setField(scene_->built.field);
+  copy->setField(shownField());
   copy->setPaint(scene_->scene);
   copy->setAnnotations(pinAnnotations(scene_->scene.pins));
   if (stability_) copy->setStability(stability_->surface.get(), displayRatios(stability_->map));
@@ -341,7 +345,6 @@ void ViewController::exportVideo() {
                    at_.view.window(), tr("Export video"), tr("Videos (*.ogv)"),
                    QFileInfo(recording).completeBaseName() + QStringLiteral(".ogv"),
                    [this, recording](const QString& path) { writeVideo(recording, path); });
-               dialog->setDirectory(QFileInfo(recording).absolutePath());
                dialog->open();
              });
 }

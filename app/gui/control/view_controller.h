@@ -57,7 +57,6 @@ class ViewController : public QObject {
 
   SceneView& view() { return at_.view.view(); }
   Content content() const { return content_; }
-  bool hasPaint() const { return has_paint_; }
   void clear() {
     showMesh(nullptr);
     content_ = Content::nothing;
@@ -80,6 +79,7 @@ class ViewController : public QObject {
 
  signals:
   void notified(const patina::Message& message);
+  void coloredChanged(); // The card Colours has another thing, or none.
   void colorsEdited(const std::string& thing, const patina::ColorScale& scale);
 
  private:
@@ -88,6 +88,8 @@ class ViewController : public QObject {
   void saveFigure(const Figure& figure);
   void copyFigure(const Figure& figure);
   std::unique_ptr<SceneView> copyOfView(); // Lacks the tool.
+  // The field that is drawn, plotted and probed: with baked relief. There must be a scene.
+  const std::shared_ptr<const SurfaceField>& shownField() const { return scene_->paint.field; }
   void writeVideo(const QString& recording, const QString& path);
   void showMesh(std::shared_ptr<const TriangleMesh> mesh);
   void showPaint(const Scene& scene);
@@ -95,7 +97,9 @@ class ViewController : public QObject {
   void showProfile(const Vec3& from, const Vec3& to, bool complete);
   void showHistogram();
   void takeColors();
-  void offerColors(); // Shows which drawn things have a colour scale.
+  void offerColors(); // Hands the selected thing to the card Colours.
+  void show(const std::string& thing, bool on);
+  void select(const QPoint& pixel); // The row of what is in front there.
   void clip(bool on);
   void turnClip(ClipTurn turn);
   void setClip(const std::optional<ClipPlane>& plane) {
@@ -105,7 +109,6 @@ class ViewController : public QObject {
 
   Parts at_;
   Content content_ = Content::nothing;
-  bool has_paint_ = false;
   std::optional<ClipPlane> clip_;
   SlicePosition slice_;
   double iso_ = 0;                                    // [m]

@@ -80,6 +80,39 @@ void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
   });
 }
 
+void askPicture(QWidget* parent, const QString& name, bool has_coordinates,
+                std::function<void(PictureTarget, Projection)> answer) {
+  QDialog* dialog = questionAbout(parent, QDialog::tr("Lay a picture"),
+                                  QDialog::tr("What does %1 give the object?").arg(name));
+  dialog->setObjectName(QStringLiteral("picture_dialog"));
+  const auto addChoice = [dialog](const char* words, const QString& label,
+                                  const QStringList& choices, int chosen) {
+    auto* group = new QButtonGroup(dialog);
+    if (!label.isEmpty()) dialog->layout()->addWidget(new QLabel(label, dialog));
+    for (int i = 0; i < choices.size(); ++i) {
+      if (choices[i].isEmpty()) continue;
+      auto* button = new QRadioButton(choices[i], dialog);
+      button->setObjectName(QString::fromUtf8(words) + QString::number(i));
+      button->setChecked(i == chosen);
+      group->addButton(button, i);
+      dialog->layout()->addWidget(button);
+    }
+    return group;
+  };
+  auto* target = addChoice("picture_target_", {},
+                           {QDialog::tr("Colour"), QDialog::tr("Relief: bright is high")}, 0);
+  auto* projection =
+      addChoice("picture_projection_", QDialog::tr("It is laid"),
+                {has_coordinates ? QDialog::tr("by the mesh's own texture coordinates") : QString(),
+                 QDialog::tr("along x, onto both sides"), QDialog::tr("along y, onto both sides"),
+                 QDialog::tr("along z, onto both sides")},
+                has_coordinates ? 0 : 3);
+  ask(dialog, parent, [target, projection, answer = std::move(answer)] {
+    answer(static_cast<PictureTarget>(target->checkedId()),
+           static_cast<Projection>(projection->checkedId()));
+  });
+}
+
 void askIso(QWidget* parent, const QString& name, double low, double high,
             std::function<void(double)> answer) {
   QDialog* dialog =

@@ -7,6 +7,7 @@
 #include <QWidget>
 
 #include "geometry/mesh/mesh_unit.h"
+#include "session/edit/lay_picture.h"
 
 namespace patina {
 
@@ -17,6 +18,10 @@ void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
 // Queries the value of a volume at the surface.
 void askIso(QWidget* parent, const QString& name, double low, double high,
             std::function<void(double)> answer);
+
+// Queries as what a picture is laid on an object, and how. has_coordinates: the mesh's own ones.
+void askPicture(QWidget* parent, const QString& name, bool has_coordinates,
+                std::function<void(PictureTarget, Projection)> answer);
 
 // Offers to open the readable part of a damaged workspace.
 void askRecover(QWidget* parent, const QString& name, const QString& message,

@@ -3,8 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
+#include <QCheckBox>
+#include <QComboBox>
 #include <QFileDialog>
+
+#include "geometry/mesh/mesh_unit.h"
 
 namespace patina {
 
@@ -13,6 +18,10 @@ class WorkspaceFileDialog : public QFileDialog {
  public:
   enum class For { opening, saving };
   WorkspaceFileDialog(QWidget* parent, const QString& title, For purpose);
+  // Unit and up axis of a mesh file, as chosen below the list; nullopt: millimetres, unless the
+  // size is unlikely.
+  std::optional<MeshUnit> unit() const;
+  UpAxis up() const { return y_up_->isChecked() ? UpAxis::y : UpAxis::z; }
 
  signals:
   void chosen(const QString& path);
@@ -22,6 +31,10 @@ class WorkspaceFileDialog : public QFileDialog {
 
  private:
   bool take(const QString& path); // False: it is no workspace.
+  void addMeshChoices();
+
+  QComboBox* unit_ = nullptr; // Only for opening, as y_up_.
+  QCheckBox* y_up_ = nullptr;
 };
 
 // Returns "cup.patina", or "cup-2.patina" if that exists.

@@ -16,14 +16,13 @@ QString caption(PaintQuantity quantity) {
   return captionOf(quantity == PaintQuantity::color ? Tool::color : Tool::relief);
 }
 
-constexpr int kFollows = 0, kNothing = 1, kFirst = 2;
+constexpr int kFollows = 0, kFirst = 1;
 
 } // namespace
 
 PaintDisplay::PaintDisplay(QWidget* parent) : QWidget(parent), combo_(new QComboBox(this)) {
   auto* grid = new QGridLayout(this);
-  grid->setContentsMargins(0, 4, 0, 0);
-  grid->setVerticalSpacing(4);
+  grid->setContentsMargins(0, 0, 0, 0);
   grid->addWidget(quietLabel(tr("Paint")), 0, 0);
   grid->addWidget(named(combo_, "paint_shown", tr("The paint that is shown")), 0, 1);
   grid->setColumnStretch(1, 1);
@@ -45,9 +44,8 @@ void PaintDisplay::setAvailable(const std::vector<PaintQuantity>& quantities) {
     const QSignalBlocker quiet(combo_);
     combo_->clear();
     combo_->addItem(tr("as the tool"));
-    combo_->addItem(tr("nothing"));
     for (const PaintQuantity quantity : available_) combo_->addItem(caption(quantity));
-    int now = before == kNothing ? kNothing : kFollows;
+    int now = kFollows;
     for (std::size_t i = 0; i < available_.size(); ++i)
       if (available_[i] == chosen) now = kFirst + static_cast<int>(i);
     combo_->setCurrentIndex(now);
@@ -58,9 +56,9 @@ void PaintDisplay::setAvailable(const std::vector<PaintQuantity>& quantities) {
 void PaintDisplay::decide() {
   const int index = combo_->currentIndex();
   std::optional<PaintQuantity> now;
-  if (index >= kFirst) {
+  if (on_ && index >= kFirst) {
     now = available_[static_cast<std::size_t>(index - kFirst)];
-  } else if (index == kFollows && !available_.empty()) {
+  } else if (on_ && !available_.empty()) {
     now = quantityOf(tool_);
     // A new kind of paint is shown at once; otherwise the display does not change.
     if (!now || !has(*now)) now = shown_ && has(*shown_) ? *shown_ : available_.front();

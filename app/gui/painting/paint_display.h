@@ -1,4 +1,4 @@
-// Chooses which paint is shown. Hidden without paint.
+// Chooses which paint is shown.
 #pragma once
 
 #include <vector>
@@ -21,6 +21,10 @@ class PaintDisplay : public QWidget {
     tool_ = choice;
     decide();
   }
+  void setOn(bool on) { // Off: no paint is shown, whichever is chosen.
+    on_ = on;
+    decide();
+  }
   std::optional<PaintQuantity> shown() const { return shown_; }
 
  signals:
@@ -33,7 +37,8 @@ class PaintDisplay : public QWidget {
   std::vector<PaintQuantity> available_;
   ToolChoice tool_;
   std::optional<PaintQuantity> shown_;
-  QComboBox* combo_; // "As the tool", "nothing", then the available ones.
+  bool on_ = true;
+  QComboBox* combo_; // "As the tool", then the available ones.
 };
 
 } // namespace patina

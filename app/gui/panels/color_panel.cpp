@@ -1,6 +1,7 @@
 #include "app/gui/panels/color_panel.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <QFormLayout>
 #include <QHBoxLayout>
@@ -28,10 +29,10 @@ struct ThingWords {
 ThingWords wordsOfThing(const std::string& thing) {
   for (const Channel& row : kChannels)
     if (thing == row.key) return {tr(row.caption), row.reading};
-  if (thing == "slice") return {tr("Slice: distance")};
-  if (thing == "error") return {tr("Error map")};
-  if (thing == "relief") return {tr("Relief")};
-  return {thing == "iso" ? tr("Iso-surface") : tr("Mesh"), {}, false};
+  if (thing == "slice") return {tr("slice")};
+  if (thing == "error") return {tr("error map")};
+  if (thing == "relief") return {tr("relief")};
+  return {thing == "iso" ? tr("iso-surface") : tr("mesh"), {}, false};
 }
 
 QIcon iconOfMap(ColorMap map) {
@@ -58,15 +59,13 @@ Number* quietNumber(Number* number, const char* name, const QString& tip) {
 } // namespace
 
 ColorPanel::ColorPanel(QWidget* parent)
-    : QGroupBox(tr("Colours"), parent), thing_box_(new QComboBox(this)), map_(new QComboBox),
-      range_(new QComboBox), reversed_(new QCheckBox(tr("Reversed"))),
-      log_(new QCheckBox(tr("Log"))), symmetric_(new QCheckBox(tr("Symmetric"))),
-      bands_(new QSpinBox), digits_(new QSpinBox), low_(new QDoubleSpinBox),
-      high_(new QDoubleSpinBox), percentile_(new QDoubleSpinBox),
+    : QGroupBox(tr("Colours"), parent), map_(new QComboBox), range_(new QComboBox),
+      reversed_(new QCheckBox(tr("Reversed"))), log_(new QCheckBox(tr("Log"))),
+      symmetric_(new QCheckBox(tr("Symmetric"))), bands_(new QSpinBox), digits_(new QSpinBox),
+      low_(new QDoubleSpinBox), high_(new QDoubleSpinBox), percentile_(new QDoubleSpinBox),
       opacity_(new ValueRow(tr("Opacity"), QStringLiteral("%"), {0, 100, 5, 0}, this)),
       map_card_(new QWidget(this)), numbers_(new QWidget) {
   auto* column = layoutIn<QVBoxLayout>(this, 4);
-  column->addWidget(named(thing_box_, "color_thing", tr("The drawn thing whose colours are set")));
   auto* form = layoutIn<QFormLayout>(map_card_, 4);
   column->addWidget(map_card_);
   map_->setIconSize({48, 12});
@@ -102,7 +101,7 @@ ColorPanel::ColorPanel(QWidget* parent)
   form->addRow(nullptr, percentile_);
   line({}, {named(symmetric_, "color_symmetric", tr("Widens the range to be symmetric about 0")),
             named(log_, "color_log", tr("Logarithmic; needs values above 0"))});
-  for (QComboBox* combo : {thing_box_, map_, range_}) { // The side panel is narrow.
+  for (QComboBox* combo : {map_, range_}) { // The side panel is narrow.
     combo->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     combo->setMinimumContentsLength(8);
   }
@@ -112,7 +111,6 @@ ColorPanel::ColorPanel(QWidget* parent)
   form->addRow(quietLabel(tr("Digits")), digits_);
   column->addWidget(named(opacity_, "color_opacity", tr("100 % hides what is behind")));
 
-  connect(thing_box_, qOverload<int>(&QComboBox::activated), this, &ColorPanel::select);
   connect(map_, qOverload<int>(&QComboBox::activated), this, [this](int row) {
     change([row](ColorScale& scale) { scale.map = kColorMaps[row].value; });
   });
@@ -151,35 +149,16 @@ ColorPanel::ColorPanel(QWidget* parent)
   connect(opacity_, &ValueRow::edited, this, [this](double percent) {
     change([=](ColorScale& scale) { scale.opacity = percent / 100; });
   });
-  setThings({});
 }
 
-void ColorPanel::setThings(const std::vector<std::string>& things) {
-  if (things == things_ && !things.empty()) return;
-  const auto isNew = [&](const std::string& thing) {
-    return std::find(things_.begin(), things_.end(), thing) == things_.end();
-  };
-  std::string chosen = thing_;
-  if (std::find(things.begin(), things.end(), chosen) == things.end()) chosen.clear();
-  const auto added = std::find_if(things.begin(), things.end(), isNew);
-  if (added != things.end() && (chosen.empty() || !things_.empty())) chosen = *added;
-  if (chosen.empty() && !things.empty()) chosen = things.front();
-  things_ = things;
-  thing_box_->clear();
-  for (const std::string& thing : things_) thing_box_->addItem(wordsOfThing(thing).caption);
-  thing_.clear();
-  setEnabled(!things_.empty());
-  const auto at = std::find(things_.begin(), things_.end(), chosen);
-  if (at != things_.end()) {
-    thing_box_->setCurrentIndex(static_cast<int>(at - things_.begin()));
-    select(thing_box_->currentIndex());
-  }
-}
-
-void ColorPanel::select(int index) {
-  thing_ = things_[static_cast<std::size_t>(index)];
+void ColorPanel::setThing(const std::string& thing) {
+  const auto things = coloredThings();
+  thing_ = std::find(things.begin(), things.end(), thing) != things.end() ? thing : "";
+  if (thing_.empty()) return;
   const ThingWords words = wordsOfThing(thing_);
+  setTitle(tr("Colours: %1").arg(words.caption));
   per_si_ = words.reading.display_per_si;
+  decimals_ = words.reading.decimals;
   const QString unit = shownText(words.reading.unit);
   for (QDoubleSpinBox* number : {low_, high_}) {
     const QSignalBlocker quiet(number);
@@ -210,20 +189,24 @@ void ColorPanel::showScale() {
   range_->setCurrentIndex(scale.range ? kLocked : scale.percentile ? kPercentile : kFree);
   percentile_->setVisible(scale.percentile.has_value());
   percentile_->setValue(scale.percentile.value_or(2));
-  if (scale.range) setNumbers(*scale.range);
+  if (scale.range) setNumbers(*scale.range, decimals_);
   const bool translucent = thing_ == "iso";
   opacity_->setValue(100 * scale.opacity.value_or(translucent ? 0.38 : 1));
 }
 
-void ColorPanel::setNumbers(const ValueRange& range) {
+void ColorPanel::setNumbers(const ValueRange& range, int decimals) {
   const QSignalBlocker quiet_low(low_), quiet_high(high_);
+  for (QDoubleSpinBox* number : {low_, high_}) number->setDecimals(decimals);
   low_->setValue(range.low * per_si_);
   high_->setValue(range.high * per_si_);
 }
 
 void ColorPanel::setRange(const std::optional<ValueRange>& range) {
+  // Large numbers have room for fewer digits.
+  const double most = range ? per_si_ * std::max(std::abs(range->low), std::abs(range->high)) : 0;
+  const int fewer = std::clamp(static_cast<int>(std::log10(std::max(most, 1.0))) - 1, 0, decimals_);
   if (!range || low_->hasFocus() || high_->hasFocus() || scaleOf(scales_, thing_).range) return;
-  setNumbers(*range);
+  setNumbers(*range, decimals_ - fewer);
 }
 
 void ColorPanel::change(const std::function<void(ColorScale&)>& set) {

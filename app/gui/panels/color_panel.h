@@ -1,11 +1,10 @@
-// Range, colour map, opacity and numbers of one of the drawn things.
+// Range, colour map, opacity and numbers of a drawn thing.
 #pragma once
 
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -23,26 +22,25 @@ class ColorPanel : public QGroupBox {
  public:
   explicit ColorPanel(QWidget* parent = nullptr);
 
-  // Names of the drawn things that have a scale; a new one is selected.
-  void setThings(const std::vector<std::string>& things);
+  // Name of a drawn thing; one without colours counts as none.
+  void setThing(const std::string& thing);
   void setScales(const ColorScales& scales);             // Sends no signal.
-  const std::string& thing() const { return thing_; }    // The selected one; empty: none.
+  const std::string& thing() const { return thing_; }    // Empty: none.
   void setRange(const std::optional<ValueRange>& range); // Range in the picture, not while typed.
 
  signals:
   void edited(const std::string& thing, const patina::ColorScale& scale);
 
  private:
-  void select(int index);
   void showScale();
   void change(const std::function<void(ColorScale&)>& set);
-  void setNumbers(const ValueRange& range);
+  void setNumbers(const ValueRange& range, int decimals);
 
-  std::vector<std::string> things_;
   std::string thing_;
   ColorScales scales_;
   double per_si_ = 1;
-  QComboBox *thing_box_, *map_, *range_;
+  int decimals_ = 3;
+  QComboBox *map_, *range_;
   QCheckBox *reversed_, *log_, *symmetric_;
   QSpinBox *bands_, *digits_;
   QDoubleSpinBox *low_, *high_, *percentile_;

@@ -1,9 +1,11 @@
 #include "app/gui/panels/display_panel.h"
 
+#include <algorithm>
+#include <iterator>
 #include <tuple>
 
-#include <QGridLayout>
 #include <QHBoxLayout>
+#include <QScrollBar>
 #include <QVBoxLayout>
 
 #include "app/gui/toolkit/words.h"
@@ -13,77 +15,93 @@
 namespace patina {
 namespace {
 
-struct Box {
-  Layer layer;
-  const char *words, *key, *tip;
+struct Row {
+  const char *thing, *words, *key, *tip;
   bool needs_field = true, shown = false;
 };
-// In the order of the panel.
-constexpr Box kBoxes[] = {
-    {Layer::mesh, "Mesh", "M", "The triangles of the open scene", false, true},
-    {Layer::tip, "Tool and force", "T",
+// In the order of the list.
+constexpr Row kRows[] = {
+    {"mesh", "Mesh", "M", "The triangles of the open scene", false, true},
+    {"paint", "Paint", "", "The paint of the objects, of one kind", false, true},
+    {"tip", "Tool and force", "T",
      "The tool at the contact point, the hand position as a ghost, and the force on it", true,
      true},
-    {Layer::slice, "Slice", "S",
+    {"slice", "Slice", "S",
      "A plane through the field, coloured by distance. The part in front of it is hidden."},
-    {Layer::iso, "Iso-surface", "I", "The surface at a distance: 0 is the object"},
-    {Layer::wireframe, "Wireframe", "W", "The edges of the triangles", false},
-    {Layer::scale, "Scale bar", "L", "A length at the distance of the picture's centre", false,
-     true},
-    {Layer::nodes, "Nodes at the tip", "N",
+    {"iso", "Iso-surface", "I", "The surface at a distance: 0 is the object"},
+    {"clip", "Clip plane", "Shift + S",
+     "Hides the part in front of a plane. Its ball shifts the plane, the head of its arrow tilts "
+     "it.",
+     false},
+    {"wireframe", "Wireframe", "W", "The edges of the triangles", false},
+    {"nodes", "Nodes at the tip", "N",
      "The field nodes used for contact: warm inside, cool outside"},
-    {Layer::extent, "Field extent", "E", "The box of the grid"},
-    {Layer::stability, "Stability", "K",
+    {"extent", "Field extent", "E", "The box of the grid"},
+    {"stability", "Stability", "K",
      "Where the haptic loop would be unstable: K*(x)/K, the largest stable stiffness over the "
      "actual one. Below 1 (warm), a held tip starts to vibrate."},
-    {Layer::band, "Band", "B",
-     "Range of the offset or the magnet: a shell, and a tint of the slice", true, true}};
+    {"band", "Band", "B", "Range of the offset or the magnet: a shell, and a tint of the slice",
+     true, true},
+    {"scale", "Scale bar", "L", "A length at the distance of the picture's centre", false, true}};
+
+QString tipOf(const Row& row) {
+  const bool is_layer = std::string(row.thing) != "clip" && std::string(row.thing) != "paint";
+  QString tip = QStringLiteral("<b>%1</b>").arg(tr(row.words));
+  if (*row.key != '\0') tip += QStringLiteral(" (%1)").arg(QString::fromUtf8(row.key));
+  tip += QStringLiteral("<br>") + tr(row.tip);
+  return is_layer ? tip + tr("<br>In commands: <i>--show %1</i>").arg(row.thing) : tip;
+}
 
 } // namespace
 
-DisplayPanel::DisplayPanel(QWidget* parent)
-    : QGroupBox(tr("Show"), parent), clip_(new QCheckBox(tr("Clip plane"), this)),
-      clip_card_(new QWidget(this)), slice_card_(new QWidget(this)),
-      direction_(new QLineEdit(slice_card_)), iso_card_(new QWidget(this)) {
+DisplayPanel::DisplayPanel(QWidget* parent) : QGroupBox(tr("Show"), parent) {
   auto* column = layoutIn<QVBoxLayout>(this);
-  auto* grid = new QGridLayout;
-  grid->setVerticalSpacing(4);
-  column->addLayout(grid);
-  int index = 0;
-  for (const Box& row : kBoxes) {
-    const Layer layer = row.layer;
-    auto* box = new QCheckBox(tr(row.words), this);
-    box->setObjectName(shownText(name(layer)));
-    box->setToolTip(
-        QStringLiteral("<b>%1</b> (%2)<br>%3<br>In commands: <i>--show %4</i>")
-            .arg(tr(row.words), QString::fromUtf8(row.key), tr(row.tip), box->objectName()));
-    box->setChecked(row.shown);
-    connect(box, &QCheckBox::toggled, this, [this, layer](bool on) {
-      arrange();
-      emit layerToggled(layer, on);
-    });
-    grid->addWidget(box, index / 2, index % 2);
-    boxes_[layer] = box;
-    ++index;
+  list_ = addList(column, "layers",
+                  tr("Checked things are shown; the values of the selected one are below and in "
+                     "the card Colours"));
+  list_->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff); // It is as high as its rows.
+  for (const Row& row : kRows) {
+    auto* item = new QListWidgetItem(tr(row.words), list_);
+    item->setData(Qt::UserRole, QString::fromUtf8(row.thing));
+    item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsUserCheckable);
+    item->setCheckState(row.shown ? Qt::Checked : Qt::Unchecked);
+    item->setToolTip(tipOf(row));
+    rows_[row.thing] = item;
   }
-
-  grid->addWidget(clip_, index / 2, index % 2);
-  addClip(*column);
-
-  stability_note_ = addNote(column, "stability_words");
-  addSlice(*column);
-  (new QVBoxLayout(iso_card_))->setContentsMargins(0, 4, 0, 0);
-  column->addWidget(iso_card_);
+  list_->setCurrentRow(0);
+  connect(list_, &QListWidget::itemChanged, this, [this](QListWidgetItem* item) {
+    const bool on = item->checkState() == Qt::Checked;
+    if (on) list_->setCurrentItem(item); // Its values come with it.
+    arrange();
+    emit shownChanged(item->data(Qt::UserRole).toString().toStdString(), on);
+  });
+  connect(list_, &QListWidget::currentItemChanged, this, [this] {
+    arrange();
+    emit selectionChanged();
+  });
+  addClip();
+  addSlice();
+  stability_note_ = addNote(addCard("stability"), "stability_words");
+  addCard("iso");
   setField(nullptr);
 }
 
-void DisplayPanel::addClip(QLayout& column) {
-  named(clip_, "clip",
-        tr("<b>Clip plane</b> (Shift + S)<br>Hides the part in front of a plane. Its ball shifts "
-           "the plane, the head of its arrow tilts it."));
-  connect(clip_, &QCheckBox::toggled, this, &DisplayPanel::arrange);
-  auto* line = new QHBoxLayout(clip_card_);
-  line->setContentsMargins(0, 4, 0, 0);
+QVBoxLayout* DisplayPanel::addCard(const char* thing) {
+  auto* card = new QWidget(this);
+  auto* column = layoutIn<QVBoxLayout>(card, 4);
+  addValues(thing, card);
+  return column;
+}
+
+void DisplayPanel::addValues(const std::string& thing, QWidget* values) {
+  values_[thing] = values;
+  layout()->addWidget(values);
+  arrange();
+}
+
+void DisplayPanel::addClip() {
+  auto* line = new QHBoxLayout;
+  addCard("clip")->addLayout(line);
   line->setSpacing(4);
   line->addWidget(quietLabel(tr("Clip across")));
   const std::tuple<ClipTurn, const char*, QString, QString> turns[] = {
@@ -96,13 +114,10 @@ void DisplayPanel::addClip(QLayout& column) {
     addButton<QToolButton>(line, name, words, tip, this,
                            [this, turn = turn] { emit clipTurned(turn); });
   line->addStretch(1);
-  column.addWidget(clip_card_);
 }
 
-void DisplayPanel::addSlice(QLayout& column) {
-  auto* card = new QVBoxLayout(slice_card_);
-  card->setContentsMargins(0, 4, 0, 0);
-  card->setSpacing(4);
+void DisplayPanel::addSlice() {
+  auto* card = addCard("slice");
   auto* line = new QHBoxLayout;
   line->setSpacing(4);
   line->addWidget(quietLabel(tr("Slice across")));
@@ -121,8 +136,9 @@ void DisplayPanel::addSlice(QLayout& column) {
   auto* angle = new QHBoxLayout;
   angle->setSpacing(4);
   angle->addWidget(quietLabel(tr("Direction")));
-  angle->addWidget(named(direction_, "slice_direction",
-                         tr("Direction normal to the slice: x, −y, or three numbers as 0, 1, 1")));
+  direction_ = named(new QLineEdit, "slice_direction",
+                     tr("Direction normal to the slice: x, −y, or three numbers as 0, 1, 1"));
+  angle->addWidget(direction_);
   card->addLayout(angle);
   connect(direction_, &QLineEdit::editingFinished, this, [this] {
     try {
@@ -137,9 +153,8 @@ void DisplayPanel::addSlice(QLayout& column) {
   actions->setSpacing(4);
   auto* handle = addButton<QToolButton>(
       actions, "slice_handle", tr("Handle"),
-      tr("Its ball shifts the slice, the head of its arrow tilts it"), this, [this] {
-        emit sliceHandled(slice_card_->findChild<QToolButton*>("slice_handle")->isChecked());
-      });
+      tr("Its ball shifts the slice, the head of its arrow tilts it"), this,
+      [this] { emit sliceHandled(findChild<QToolButton*>("slice_handle")->isChecked()); });
   line_profile_ = addButton<QToolButton>(
       actions, "line_profile", tr("Line profile"),
       tr("Then drag a line in the picture: the distance along it as a plot and as a table"));
@@ -150,7 +165,6 @@ void DisplayPanel::addSlice(QLayout& column) {
       &DisplayPanel::histogramRequested);
   actions->addStretch(1);
   card->addLayout(actions);
-  column.addWidget(slice_card_);
 }
 
 void DisplayPanel::moveSlice(const SlicePosition& place) {
@@ -178,11 +192,12 @@ void DisplayPanel::makePositionRow(const std::optional<ValueRange>& range) {
   position_ = nullptr;
   if (!range) return;
   const double low = 1000 * range->low, high = 1000 * range->high;
-  position_ = new ValueRow(tr("Slice position"), QStringLiteral("mm"),
-                           {low, high, (high - low) / 100, high - low < 5 ? 3 : 2}, slice_card_);
+  position_ =
+      new ValueRow(tr("Slice position"), QStringLiteral("mm"),
+                   {low, high, (high - low) / 100, high - low < 5 ? 3 : 2}, values_["slice"]);
   named(position_, "slice_position",
         tr("Position of the slice along its direction, in world coordinates"));
-  static_cast<QVBoxLayout*>(slice_card_->layout())->insertWidget(2, position_);
+  static_cast<QVBoxLayout*>(values_["slice"]->layout())->insertWidget(2, position_);
   connect(position_, &ValueRow::edited, this, [this](double mm) {
     slice_.position = mm / 1000;
     emit sliceMoved(slice_);
@@ -191,39 +206,61 @@ void DisplayPanel::makePositionRow(const std::optional<ValueRange>& range) {
 
 void DisplayPanel::setField(const SurfaceField* field) {
   grid_ = field != nullptr ? std::optional(field->grid) : std::nullopt;
-  const double kept = iso_ != nullptr ? iso_->value() : 0;
-  delete iso_;
-  iso_ = nullptr;
-  if (grid_) {
-    const double reach = 1000 * field->grid.voxel * (field->band - 1);
+  const double reach = field != nullptr ? field->grid.voxel * (field->band - 1) : 0;
+  if (std::exchange(iso_reach_, reach) != reach && reach > 0) {
+    const double kept = iso_ != nullptr ? iso_->value() : 0, mm = 1000 * reach;
+    takeAway(iso_);
     iso_ = new ValueRow(tr("Iso-surface at"), QStringLiteral("mm"),
-                        {-reach, reach, reach / 20, reach < 1 ? 3 : 2}, iso_card_);
+                        {-mm, mm, mm / 20, mm < 1 ? 3 : 2}, values_["iso"]);
     named(iso_, "iso_value", tr("Distance from the surface, positive outside"));
     iso_->setValue(kept);
-    iso_card_->layout()->addWidget(iso_);
-    connect(iso_, &ValueRow::edited, this, [this](double mm) { emit isoMoved(mm / 1000); });
+    values_["iso"]->layout()->addWidget(iso_);
+    connect(iso_, &ValueRow::edited, this, [this](double now) { emit isoMoved(now / 1000); });
   }
   showSlice();
   arrange();
 }
 
+void DisplayPanel::setPaint(bool has_paint) {
+  const bool came = has_paint && !paint_there_;
+  setThere(paint_there_, has_paint);
+  if (came) select("paint");
+}
+
 void DisplayPanel::arrange() {
-  for (const Box& box : kBoxes)
-    boxes_[box.layer]->setVisible((grid_ || !box.needs_field) &&
-                                  (has_band_ || box.layer != Layer::band));
-  clip_card_->setVisible(clip_->isChecked());
-  slice_card_->setVisible(grid_ && shown(Layer::slice));
-  iso_card_->setVisible(grid_ && shown(Layer::iso));
+  int high = 2 * list_->frameWidth();
+  for (const Row& row : kRows) {
+    QListWidgetItem* item = rows_[row.thing];
+    const std::string thing = row.thing;
+    item->setHidden((row.needs_field && !grid_) || (thing == "band" && !band_there_) ||
+                    (thing == "paint" && !paint_there_));
+    if (!item->isHidden()) high += list_->sizeHintForRow(list_->row(item));
+  }
+  if (list_->currentItem()->isHidden()) list_->setCurrentRow(0);
+  list_->setFixedHeight(high);
+  for (const auto& [thing, values] : values_) {
+    values->setVisible(thing == selected() && !rows_[thing]->isHidden());
+    values->setEnabled(isShown(thing));
+  }
 }
 
-void DisplayPanel::setShown(Layer layer, bool on) {
-  const auto box = boxes_.find(layer);
-  if (box != boxes_.end()) box->second->setChecked(on);
+void DisplayPanel::setShown(const std::string& thing, bool on) {
+  if (const auto row = rows_.find(thing); row != rows_.end())
+    row->second->setCheckState(on ? Qt::Checked : Qt::Unchecked);
 }
 
-bool DisplayPanel::shown(Layer layer) const {
-  const auto box = boxes_.find(layer);
-  return box != boxes_.end() && box->second->isChecked();
+bool DisplayPanel::isShown(const std::string& thing) const {
+  const auto row = rows_.find(thing);
+  return row != rows_.end() && row->second->checkState() == Qt::Checked;
+}
+
+void DisplayPanel::select(const std::string& thing) {
+  if (const auto row = rows_.find(thing); row != rows_.end() && !row->second->isHidden())
+    list_->setCurrentItem(row->second);
+}
+
+std::string DisplayPanel::selected() const {
+  return list_->currentItem()->data(Qt::UserRole).toString().toStdString();
 }
 
 } // namespace patina

@@ -1,12 +1,13 @@
-// Chooses the layers of the 3D view, and the values of the slice and the iso-surface.
+// Lists the things of the 3D view: which are shown, and the values of the selected one.
 #pragma once
 
 #include <map>
 #include <optional>
+#include <string>
 
-#include <QCheckBox>
 #include <QGroupBox>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QToolButton>
 
 #include "app/gui/toolkit/card.h"
@@ -18,29 +19,32 @@ namespace patina {
 // Pose of the clip plane: normal to an axis, facing the viewer, or reversed.
 enum class ClipTurn { x, y, z, viewer, flip };
 
+// A thing is a layer's name, "clip" or "paint".
 class DisplayPanel : public QGroupBox {
   Q_OBJECT
  public:
   explicit DisplayPanel(QWidget* parent = nullptr);
 
   void setField(const SurfaceField* field); // nullptr: only the mesh can be shown.
-  void setBand(bool has_band) {             // True if the scene has an offset or a magnet.
-    has_band_ = has_band;
-    arrange();
-  }
+  void setBand(bool has_band) { setThere(band_there_, has_band); } // Offset or magnet.
+  void setPaint(bool has_paint); // Painted objects; selects the paint when it comes.
   // Progress or result of the stability map; empty: none.
   void setStabilityNote(const QString& words) { say(stability_note_, words); }
-  void setShown(Layer layer, bool on); // Sends layerToggled if it changes.
-  bool shown(Layer layer) const;
-  QCheckBox& clip() { return *clip_; }       // Checked while there is a clip plane.
+  // Adds widgets below the list that are visible while the thing is selected.
+  void addValues(const std::string& thing, QWidget* values);
+
+  void setShown(const std::string& thing, bool on); // Sends shownChanged if it changes.
+  bool isShown(const std::string& thing) const;
+  void select(const std::string& thing); // No effect without its row.
+  std::string selected() const;
+  QString caption(const std::string& thing) const { return rows_.at(thing)->text(); }
   void setSlice(const SlicePosition& place); // Sends no signal.
   // While checked, a drag in the view draws the line of a profile.
   QToolButton& lineProfile() { return *line_profile_; }
-  // Caption of the layer's box, which must exist.
-  QString caption(Layer layer) const { return boxes_.at(layer)->text(); }
 
  signals:
-  void layerToggled(patina::Layer layer, bool on);
+  void shownChanged(const std::string& thing, bool on);
+  void selectionChanged();
   void sliceMoved(const patina::SlicePosition& place);
   void sliceFacing();         // Requests the plane that faces the viewer.
   void sliceHandled(bool on); // Shows the slice's handle or hides it.
@@ -49,28 +53,32 @@ class DisplayPanel : public QGroupBox {
   void clipTurned(patina::ClipTurn turn);
 
  private:
+  void setThere(bool& is_there, bool now) {
+    is_there = now;
+    arrange();
+  }
   void arrange();
-  void addClip(QLayout& column);
-  void addSlice(QLayout& column);
+  QVBoxLayout* addCard(const char* thing);
+  void addClip();
+  void addSlice();
   void moveSlice(const SlicePosition& place);
   void showSlice();
   // The range depends on direction and field; nullopt: no field, no row.
   void makePositionRow(const std::optional<ValueRange>& range);
 
-  std::map<Layer, QCheckBox*> boxes_;
-  QCheckBox* clip_;
-  QWidget* clip_card_;
-  QWidget* slice_card_;
-  QLineEdit* direction_;
-  QToolButton* line_profile_;
+  QListWidget* list_;
+  std::map<std::string, QListWidgetItem*> rows_;
+  std::map<std::string, QWidget*> values_; // Only rows with values have an entry.
+  QLineEdit* direction_ = nullptr;
+  QToolButton* line_profile_ = nullptr;
   ValueRow* position_ = nullptr;
-  QLabel* stability_note_;
-  QWidget* iso_card_;
+  QLabel* stability_note_ = nullptr;
   ValueRow* iso_ = nullptr;
+  double iso_reach_ = 0; // [m]
   SlicePosition slice_;
   std::optional<ValueRange> position_range_; // [m]
   std::optional<FieldGrid> grid_;            // nullopt: no field.
-  bool has_band_ = false;
+  bool band_there_ = false, paint_there_ = false;
 };
 
 } // namespace patina

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include <QFileInfo>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QSettings>
-#include <QStandardPaths>
 #include <QToolButton>
 
 #include "app/gui/toolkit/card.h"
@@ -33,17 +31,6 @@ QString sizeInWords(const Figure& figure) {
   return words + QDialog::tr(", %1 mm at %2 dpi")
                      .arg(25.4 * figure.width / *figure.dpi, 0, 'f', 1)
                      .arg(qRound(*figure.dpi));
-}
-
-QString FigureDialog::folder() {
-  return QSettings()
-      .value(settingOf("folder"),
-             QStandardPaths::writableLocation(QStandardPaths::PicturesLocation))
-      .toString();
-}
-
-void FigureDialog::rememberFolder(const QString& path) {
-  QSettings().setValue(settingOf("folder"), QFileInfo(path).absolutePath());
 }
 
 FigureDialog::FigureDialog(const SeenView& seen, QWidget* parent) : QDialog(parent), seen_(seen) {
@@ -101,7 +88,8 @@ FigureDialog::FigureDialog(const SeenView& seen, QWidget* parent) : QDialog(pare
                     this, [this] { finish(true); });
   buttons->addStretch(1);
   addButton(buttons, "figure_cancel", tr("Cancel"), {}, this, &QDialog::reject);
-  save_ = addButton(buttons, "figure_save", tr("Save…"), tr("As PNG or TIFF, or as SVG or PDF with texts as vectors"), this,
+  save_ = addButton(buttons, "figure_save", tr("Save…"),
+                    tr("As PNG or TIFF, or as SVG or PDF with texts as vectors"), this,
                     [this] { finish(false); });
   copy_->setAutoDefault(false);
   save_->setDefault(true);

@@ -29,10 +29,6 @@ class FigureDialog : public QDialog {
   // Deletes itself when closed.
   FigureDialog(const SeenView& seen, QWidget* parent);
 
-  // Folder of the last picture, between sessions.
-  static QString folder();
-  static void rememberFolder(const QString& path); // path: a file in it
-
  signals:
   void saveRequested(const patina::Figure& figure);
   void copyRequested(const patina::Figure& figure);

@@ -31,8 +31,7 @@ MeasurePanel::MeasurePanel(QWidget* parent)
   pins_ = addList(column, "pins", tr("The scene's pins and their values"));
   auto* line = new QHBoxLayout;
   column->addLayout(line);
-  clear_ = addButton(line, "measure_clear", tr("Clear"), tr("Removes all measurements"), this,
-                     &MeasurePanel::cleared);
+  clear_ = addButton(line, "measure_clear", {}, {}, this, &MeasurePanel::cleared);
   remove_ =
       addButton(line, "pin_remove", tr("Remove"), tr("Removes the selected pin"), this, [this] {
         if (pins_->currentRow() >= 0) emit pinRemoved(pins_->currentRow());
@@ -47,6 +46,7 @@ MeasurePanel::MeasurePanel(QWidget* parent)
     arrange();
     emit kindChosen();
   });
+  setBusy(false);
   setResults({});
   remove_->setEnabled(false);
   setMode(mode_);
@@ -72,6 +72,14 @@ void MeasurePanel::setNext(int done) {
   say(next_, points[done] + tr(" Near a vertex the vertex is taken."));
 }
 
+void MeasurePanel::setBusy(bool on) {
+  busy_ = on;
+  clear_->setText(on ? tr("Stop") : tr("Clear"));
+  clear_->setToolTip(on ? tr("Stops the measurement that is being made")
+                        : tr("Removes all measurements"));
+  arrange();
+}
+
 void MeasurePanel::setResults(const QStringList& results) {
   fillList(results_, results);
   arrange();
@@ -93,7 +101,7 @@ void MeasurePanel::arrange() {
   radius_->setVisible(measures &&
                       (kind() == MeasureKind::sphere || kind() == MeasureKind::cylinder));
   results_->setVisible(measures && results_->count() > 0);
-  clear_->setVisible(measures && results_->count() > 0);
+  clear_->setVisible(busy_ || (measures && results_->count() > 0));
   for (QWidget* widget : {static_cast<QWidget*>(pins_), static_cast<QWidget*>(remove_),
                           static_cast<QWidget*>(export_)})
     widget->setVisible(!measures && pins_->count() > 0);

@@ -25,6 +25,7 @@ class MeasurePanel : public QGroupBox {
   double patchRadius() const { return 1e-3 * radius_->value(); } // [m]
   void setExtent(double extent);                                 // Sets the patch's radius [m].
   void setNext(int done); // Shows which point is clicked next, after `done` ones.
+  void setBusy(bool on);  // A measurement is being made, which the button Clear then stops.
   void setResults(const QStringList& results);
   void setPins(const QStringList& pins);
 
@@ -44,6 +45,7 @@ class MeasurePanel : public QGroupBox {
   QListWidget *results_, *pins_;
   QStringList shown_pins_; // the list's lines
   QPushButton *clear_, *remove_, *export_;
+  bool busy_ = false;
 };
 
 } // namespace patina

@@ -54,8 +54,11 @@ NoticeLine::NoticeLine(QWidget* parent) : QWidget(parent), words_(new ElidedLabe
   line->setContentsMargins(6, 0, 0, 0);
   line->setSpacing(2);
   line->addWidget(named(words_, "notice"), 1);
-  open_ = addButton<QToolButton>(line, "open_saved", tr("Open"), tr("Opens the file"), this,
-                                 [this] { openFile(file_); });
+  open_ =
+      addButton<QToolButton>(line, "open_saved", tr("Open"), tr("Opens the file"), this, [this] {
+        hide();
+        act_();
+      });
   auto* away = addButton<QToolButton>(line, "dismiss", QStringLiteral("✕"),
                                       tr("Hides this line; the message stays under Messages"), this,
                                       &QWidget::hide);
@@ -70,8 +73,11 @@ void NoticeLine::show(const Message& message) {
   applyStyleSheet(*words_, message.warns ? QStringLiteral("color: @warn;")
                                          : QStringLiteral("color: @text;"));
   words_->setText(message.words);
-  file_ = message.file;
-  open_->setVisible(!file_.isEmpty());
+  const bool opens = message.action.words.isEmpty();
+  act_ = opens ? [file = message.file] { openFile(file); } : message.action.act;
+  open_->setText(opens ? tr("Open") : message.action.words);
+  open_->setToolTip(opens ? tr("Opens the file") : tr("Does what the message proposes"));
+  open_->setVisible(!opens || !message.file.isEmpty());
   message.warns ? delay_.stop() : delay_.start();
   setVisible(true);
 }

@@ -1,6 +1,8 @@
 // The messages of the window, the newest last: a list, and a line with the newest one.
 #pragma once
 
+#include <functional>
+
 #include <QListWidget>
 #include <QTimer>
 #include <QToolButton>
@@ -13,6 +15,12 @@ struct Message {
   QString words;
   bool warns = false; // Stays until it is dismissed.
   QString file = {};  // A click opens it; empty: none.
+  // The action that the message proposes, on a button; without words: none.
+  struct Action {
+    QString words;
+    std::function<void()> act;
+  };
+  Action action = {};
 };
 
 class MessagePanel : public QListWidget {
@@ -40,7 +48,7 @@ class NoticeLine : public QWidget {
  private:
   ElidedLabel* words_;
   QToolButton* open_;
-  QString file_;
+  std::function<void()> act_;
   QTimer delay_;
 };
 

@@ -25,9 +25,15 @@ ObjectList::ObjectList(QWidget* parent)
   problem_ = addNote(column, "object_problem", "bad");
   auto* buttons = new QHBoxLayout;
   column->addLayout(buttons);
-  addButton<QToolButton>(buttons, "add_object", tr("+ Add object…"),
+  addButton<QToolButton>(buttons, "add_object", tr("+ Add…"),
                          tr("Adds a mesh or volume to the open scene"), this,
                          &ObjectList::addRequested);
+  addButton<QToolButton>(buttons, "lay_picture", tr("Picture…"),
+                         tr("Lays a picture on the selected object, as colour or as relief"), this,
+                         [this] {
+                           if (chosen() >= 0)
+                             emit pictureRequested(static_cast<std::size_t>(chosen()));
+                         });
   buttons->addStretch(1);
   remove_ = addButton<QToolButton>(buttons, "remove_object", tr("Remove"), {}, this,
                                    &ObjectList::removeChosen);

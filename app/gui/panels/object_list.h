@@ -33,6 +33,7 @@ class ObjectList : public QGroupBox {
  signals:
   void edited(); // Slow to compile: runs in the background.
   void addRequested();
+  void pictureRequested(std::size_t object);
 
  private:
   int chosen() const { return list_->currentRow(); }

@@ -14,34 +14,33 @@ std::vector<DeskRow> makeDesks() {
       color{InteractionMode::paint, Tool::color};
   std::vector<DeskRow> rows;
   const auto add = [&](Desk desk, const char* name, const QString& words, const QString& tip,
-                       int key, const std::vector<Panel>& panels, const ToolChoice& tool, Tab tab,
+                       const std::vector<Panel>& panels, const ToolChoice& tool, Tab tab,
                        Panel page, bool is_open, int high = 170) {
-    rows.push_back({desk, name, words, tip, key, panels, tool, tab, page, is_open, high});
+    rows.push_back({desk, name, words, tip, panels, tool, tab, page, is_open, high});
   };
   add(Desk::scan, "scan", tr("Scan"),
-      tr("View the recording of a camera and a probe, and its path"), Qt::Key_0,
+      tr("View the recording of a camera and a probe, and its path"),
       {P::scan, P::recorder, P::calibration, P::timeline, P::findings, P::messages}, look,
       Tab::scan, P::timeline, true, 270);
   add(Desk::align, "align", tr("Align"),
-      tr("Align a scan's path with the mesh by hand, and fit it from there"), Qt::Key_8,
+      tr("Align a scan's path with the mesh by hand, and fit it from there"),
       {P::align, P::colors, P::cost_profile, P::messages}, look, Tab::align, P::cost_profile, true,
       190);
   add(Desk::texture, "texture", tr("Texture"), tr("From a scan to a feel: register, fit, map"),
-      Qt::Key_9, {P::steps, P::library, P::profile, P::history, P::messages}, look, Tab::steps,
-      P::profile, true, 220);
-  add(Desk::feel, "feel", tr("Feel"), tr("Touch the surface and set how it feels"), Qt::Key_1,
+      {P::steps, P::library, P::profile, P::history, P::messages}, look, Tab::steps, P::profile,
+      true, 220);
+  add(Desk::feel, "feel", tr("Feel"), tr("Touch the surface and set how it feels"),
       {P::tool, P::measure, P::relief, P::touch, P::objects, P::mesh, P::device, P::display,
-       P::colors, P::paint, P::forces, P::energy, P::history, P::messages},
+       P::colors, P::forces, P::energy, P::history, P::messages},
       press, Tab::surface, P::forces, false);
   add(Desk::paint, "paint", tr("Paint"), tr("Paint colour, relief and material onto the surface"),
-      Qt::Key_2,
       {P::tool, P::measure, P::brush, P::relief, P::touch, P::objects, P::mesh, P::display,
-       P::colors, P::paint, P::forces, P::history, P::messages},
+       P::colors, P::forces, P::history, P::messages},
       color, Tab::tool, P::history, true);
   add(Desk::analyse, "analyse", tr("Analyse"),
-      tr("Inspect slices, distances, stability, forces and energy"), Qt::Key_3,
-      {P::measure, P::touch, P::objects, P::mesh, P::device, P::display, P::colors, P::paint,
-       P::forces, P::energy, P::messages},
+      tr("Inspect slices, distances, stability, forces and energy"),
+      {P::measure, P::touch, P::objects, P::mesh, P::device, P::display, P::colors, P::forces,
+       P::energy, P::messages},
       press, Tab::show, P::forces, true);
   return rows;
 }
@@ -50,12 +49,12 @@ std::vector<DeskRow> makeDesks() {
 
 std::optional<Tab> tabOf(Panel panel) {
   static const std::map<Panel, Tab> kTabs = {
-      {Panel::tool, Tab::tool},     {Panel::measure, Tab::tool},     {Panel::brush, Tab::tool},
-      {Panel::relief, Tab::tool},   {Panel::touch, Tab::surface},    {Panel::objects, Tab::object},
-      {Panel::mesh, Tab::object},   {Panel::device, Tab::device},    {Panel::display, Tab::show},
-      {Panel::colors, Tab::show},   {Panel::paint, Tab::show},       {Panel::scan, Tab::scan},
-      {Panel::recorder, Tab::scan}, {Panel::calibration, Tab::scan}, {Panel::steps, Tab::steps},
-      {Panel::align, Tab::align},   {Panel::library, Tab::library}};
+      {Panel::tool, Tab::tool},        {Panel::measure, Tab::tool},  {Panel::brush, Tab::tool},
+      {Panel::relief, Tab::tool},      {Panel::touch, Tab::surface}, {Panel::objects, Tab::object},
+      {Panel::mesh, Tab::object},      {Panel::device, Tab::device}, {Panel::display, Tab::show},
+      {Panel::colors, Tab::show},      {Panel::scan, Tab::scan},     {Panel::recorder, Tab::scan},
+      {Panel::calibration, Tab::scan}, {Panel::steps, Tab::steps},   {Panel::align, Tab::align},
+      {Panel::library, Tab::library}};
   const auto tab = kTabs.find(panel);
   return tab == kTabs.end() ? std::nullopt : std::optional(tab->second);
 }

@@ -25,8 +25,7 @@ enum class Panel {
   device,
   display,
   colors,
-  paint,
-  forces, // Tabs of the bottom panel.
+  forces = 13, // Tabs of the bottom panel; settings store their numbers.
   energy,
   history,
   messages,
@@ -53,7 +52,6 @@ struct DeskRow {
   Desk desk;
   const char* name; // Name of its button and its settings.
   QString words, tip;
-  int key; // Key, with Ctrl.
   std::vector<Panel> panels;
   // First state, until the user changes it.
   ToolChoice tool;

@@ -64,7 +64,7 @@ bool isThere(Panel panel, const WindowState& state) {
   case Panel::mesh:
     return state.content != Content::nothing;
   case Panel::colors:
-    return scene && (state.desk != Desk::align || state.path);
+    return scene && state.colored && (state.desk != Desk::align || state.path);
   case Panel::measure:
     return scene && (state.tool.handling == InteractionMode::measure ||
                      state.tool.handling == InteractionMode::pin);
@@ -74,8 +74,6 @@ bool isThere(Panel panel, const WindowState& state) {
     return scene && paints;
   case Panel::relief:
     return scene && (state.relief || (paints && state.tool.tool == Tool::relief));
-  case Panel::paint:
-    return state.paint;
   case Panel::history:
     return scene && !showsSequence(state) && state.undoable + state.redoable > 0;
   default:

@@ -29,13 +29,14 @@ struct WindowState {
   Tab tab = Tab::surface;     // Tab of the side panel, unless it has nothing to show.
   Panel page = Panel::forces; // Tab of the bottom panel, likewise.
   ToolChoice tool;
-  bool relief = false, paint = false; // The scene has them.
-  bool scan = false;                  // A scan is open.
-  bool sequence = false;              // The demonstration was started.
-  bool texture = false;               // A texture was fitted.
-  bool chosen_texture = false;        // A texture of the library is selected.
-  bool path = false;                  // There are a path and a mesh to align.
-  GuideFacts guide;                   // Progress from a scan to haptic rendering.
+  bool relief = false;         // The scene has it.
+  bool colored = false;        // The selected thing has colours.
+  bool scan = false;           // A scan is open.
+  bool sequence = false;       // The demonstration was started.
+  bool texture = false;        // A texture was fitted.
+  bool chosen_texture = false; // A texture of the library is selected.
+  bool path = false;           // There are a path and a mesh to align.
+  GuideFacts guide;            // Progress from a scan to haptic rendering.
   std::size_t undoable = 0, redoable = 0;
   bool unsaved = false;
   bool in_folder = false; // It has a folder and can be saved there.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <QFileInfo>
+#include <QSettings>
 #include <QVBoxLayout>
 
 #include "app/gui/toolkit/elided_label.h"
@@ -94,11 +95,27 @@ void FactTable::heading(const QString& words) {
   grid_->addWidget(label, grid_->rowCount(), 0, 1, 2);
 }
 
+QString lastFolder() {
+  return QSettings().value(QStringLiteral("last_folder")).toString();
+}
+
+void rememberFolder(const QString& path) {
+  QSettings().setValue(QStringLiteral("last_folder"), QFileInfo(path).absolutePath());
+}
+
+void beginInLastFolder(QFileDialog& dialog) {
+  if (QFileInfo(lastFolder()).isDir()) dialog.setDirectory(lastFolder());
+  QObject::connect(&dialog, &QFileDialog::accepted, &dialog, [&dialog] {
+    if (!dialog.selectedFiles().isEmpty()) rememberFolder(dialog.selectedFiles().front());
+  });
+}
+
 void askForPath(QWidget* window, const QString& title, QFileDialog::FileMode mode,
                 const QString& filter, std::function<void(const QString&)> then) {
   auto* dialog = new QFileDialog(window, title, {}, filter);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setFileMode(mode);
+  beginInLastFolder(*dialog);
   dialog->setOption(QFileDialog::ShowDirsOnly, mode == QFileDialog::Directory);
   // Queued, because a question may follow and the dialog must be closed by then.
   QObject::connect(dialog, &QFileDialog::fileSelected, window, std::move(then),
@@ -111,6 +128,7 @@ QFileDialog* saveDialog(QWidget* window, const QString& title, const QString& fi
   auto* dialog = new QFileDialog(window, title, {}, filter);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   dialog->setAcceptMode(QFileDialog::AcceptSave);
+  beginInLastFolder(*dialog);
   dialog->setDefaultSuffix(QFileInfo(name).suffix());
   dialog->selectFile(name);
   QObject::connect(dialog, &QFileDialog::fileSelected, window, std::move(then));

@@ -72,6 +72,11 @@ class FactTable : public QWidget {
   QGridLayout* grid_;
 };
 
+// Folder of the file that was last chosen in a dialog, between sessions; empty: none yet.
+QString lastFolder();
+void rememberFolder(const QString& path); // path: a file in it
+// The dialog begins there, and the folder of what it accepts is remembered.
+void beginInLastFolder(QFileDialog& dialog);
 // Asks for a file or folder that exists. The window goes on meanwhile.
 void askForPath(QWidget* window, const QString& title, QFileDialog::FileMode mode,
                 const QString& filter, std::function<void(const QString&)> then);

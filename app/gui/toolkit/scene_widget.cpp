@@ -262,7 +262,8 @@ bool SceneWidget::pen(QTabletEvent& event) {
 }
 
 void SceneWidget::release(const QMouseEvent& event) {
-  if (drag_ == Drag::orbit && marks() && event.button() == Qt::LeftButton && last_ == pressed_at_)
+  if (drag_ == Drag::orbit && (marks() || isNavigating()) && event.button() == Qt::LeftButton &&
+      last_ == pressed_at_)
     emit clicked(last_);
   if (drag_ == Drag::brush) brush(last_, false, 1, event);
   if (drag_ == Drag::handle) handles_.release();

@@ -104,8 +104,8 @@ struct Pointed {
 // Ctrl + wheel move the camera. Navigate: the left button and the wheel also move the camera.
 // Paint: the left button or a pen acts on the surface, the wheel zooms. Press: the same, but the
 // wheel sets the force. Pick, and Alt when feeling or painting: copies the paint at a point.
-// Measure and pin: a click sets a point. On the cube in the corner, a click looks from its side and
-// a drag rotates.
+// Measure and pin: a click sets a point; navigate: it selects what is there. On the cube in the
+// corner, a click looks from its side and a drag rotates.
 class SceneWidget : public QVTKOpenGLNativeWidget {
   Q_OBJECT
  public:
@@ -117,6 +117,7 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
     handling_ = handling;
     showPointer();
   }
+  bool isNavigating() const { return handling_ == InteractionMode::navigate; }
   // Field of the surface for double clicks. nullptr: no contact yet, the mouse navigates.
   void setField(std::shared_ptr<const SurfaceField> field);
   void setTarget(const Vec3& target) { target_ = target; }
@@ -153,7 +154,7 @@ class SceneWidget : public QVTKOpenGLNativeWidget {
   // Sent while painting or pressing: while the button is down, and on release.
   void pointed(const patina::Pointed& where);
   void pickRequested(const patina::Vec3& surface);
-  void clicked(const QPoint& pixel); // While measuring or pinning.
+  void clicked(const QPoint& pixel); // While measuring, pinning or navigating.
 
  protected:
   bool event(QEvent* event) override;

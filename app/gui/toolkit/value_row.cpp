@@ -76,9 +76,11 @@ class ValueFocus : public QObject {
   bool eventFilter(QObject* receiver, QEvent* event) override {
     const QEvent::Type type = event->type();
     auto* widget = qobject_cast<QWidget*>(receiver);
-    if (type == QEvent::ShortcutOverride && qobject_cast<QAbstractButton*>(receiver) != nullptr &&
-        panel_.isAncestorOf(widget) && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Space) {
-      event->accept(); // The button takes it.
+    const bool takes_space = qobject_cast<QAbstractButton*>(receiver) != nullptr ||
+                             qobject_cast<QAbstractItemView*>(receiver) != nullptr;
+    if (type == QEvent::ShortcutOverride && takes_space && panel_.isAncestorOf(widget) &&
+        static_cast<QKeyEvent*>(event)->key() == Qt::Key_Space) {
+      event->accept(); // The button or the list takes it.
       return true;
     }
     if (type != QEvent::Polish && type != QEvent::Wheel && type != QEvent::KeyPress) return false;

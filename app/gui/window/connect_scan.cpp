@@ -60,7 +60,10 @@ void MainWindow::connectScan() {
   const auto goes_on = std::make_shared<bool>(false);
   connect(parts_.scan, &ScanDesk::textureRequested, parts_.align, [this, goes_on] {
     if (!parts_.align->alignment().isReady()) {
-      say({tr("Open the scanned mesh first: the path must be aligned with it"), true});
+      say({tr("Open the scanned mesh first: the path must be aligned with it"),
+           true,
+           {},
+           {tr("Open…"), [this] { documents_.openDialog(false); }}});
       return;
     }
     try { // Reports missing data before the fit.

@@ -10,6 +10,7 @@
 
 #include "app/gui/aligning/align_desk.h"
 #include "app/gui/aligning/fit_words.h"
+#include "app/gui/control/proposal.h"
 #include "app/gui/loading/load_dialogs.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/state/contact_offset.h"
@@ -173,6 +174,8 @@ void MainWindow::connectFiles() {
   connect(&view_, &ViewController::notified, this, &MainWindow::say);
   connect(parts_.notice, &NoticeLine::opened, &desks_, [this] { desks_.open(Panel::messages); });
   connect(parts_.load_bar, &LoadBar::cancelled, &documents_, &DocumentController::cancel);
+  connect(parts_.objects, &ObjectList::pictureRequested, &documents_,
+          &DocumentController::layPictureDialog);
   connect(parts_.objects, &ObjectList::addRequested, &documents_,
           [this] { documents_.openDialog(true); });
 }
@@ -229,9 +232,10 @@ void MainWindow::connectTools() {
     parts_.view->setTarget(tip);
     feel_.place(edits_.scene()->scene, tip);
   });
-  connect(parts_.display, &DisplayPanel::layerToggled, this, [this](Layer layer) {
-    if (layer == Layer::stability) askStability();
+  connect(parts_.display, &DisplayPanel::shownChanged, this, [this](const std::string& thing) {
+    if (thing == name(Layer::stability)) askStability();
   });
+  connect(&view_, &ViewController::coloredChanged, this, &MainWindow::refresh);
 }
 
 WindowState MainWindow::state() const {
@@ -243,8 +247,8 @@ WindowState MainWindow::state() const {
   state.page = desks_.page();
   state.tool = parts_.tools->choice();
   state.relief = edits_.hasRelief();
-  state.paint = view_.hasPaint();
-  state.undoable = edits_.status().done;
+  state.colored = !parts_.colors->thing().empty();
+  state.undoable = edits_.undoable();
   state.redoable = edits_.status().edits.size() - edits_.status().done;
   state.unsaved = edits_.unsaved();
   state.in_folder = edits_.status().folder.has_value();
@@ -273,6 +277,10 @@ WindowState MainWindow::state() const {
 }
 
 void MainWindow::say(Message message) {
+  const auto proposal = message.warns ? proposalOf(message.words) : std::nullopt;
+  if (proposal && message.action.words.isEmpty())
+    message.action = {proposal->words,
+                      [this, change = proposal->change] { edits_.changeValues(change); }};
   message.words = withoutCommands(message.words);
   parts_.messages->add(message);
   if (!parts_.messages->isVisible()) parts_.notice->show(message);
@@ -284,6 +292,16 @@ void MainWindow::hurry() {
   if (timer_.interval() != kDragTick) timer_.setInterval(kDragTick);
 }
 
+void MainWindow::showTool() {
+  const ToolSample& sample = feel_.sample();
+  felt_ = std::max(felt_, sample.force.norm());
+  // Other tools place the tip themselves.
+  const bool is_free =
+      feel_.hasOwnHand() || parts_.tools->choice().handling == InteractionMode::feel;
+  view_.view().setTool(sample, is_free && parts_.display->isShown("tip") ? gap_.nearestTo(sample)
+                                                                         : std::nullopt);
+}
+
 void MainWindow::tick() {
   if (timer_.interval() != kTick && dragged_.hasExpired(kDragEnd)) timer_.setInterval(kTick);
   edits_.previewValues();
@@ -292,8 +310,7 @@ void MainWindow::tick() {
   if (parts_.status->showHeldBack(feel_.inhibitText())) return;
   paint_.refresh();
   probe_.refresh();
-  if (feel_.servo().running()) view_.view().setTool(feel_.sample());
-  if (feel_.servo().running()) felt_ = std::max(felt_, feel_.sample().force.norm());
+  if (feel_.servo().running()) showTool();
   view_.refresh();
   if (desks_.desk() == Desk::align) parts_.colors->setRange(parts_.align->shownRange());
   feel_.checkDevice(); // Events that came during drawing are handled at once.
@@ -316,6 +333,7 @@ void MainWindow::clear() {
   feel_.close();
   paint_.setScene(nullptr, false);
   probe_.setScene(nullptr);
+  gap_.setScene(nullptr);
   measure_.setScene(nullptr, true);
   parts_.status->showScene(nullptr);
 }
@@ -359,6 +377,7 @@ void MainWindow::showScene(const SceneChange& change) {
   }
   paint_.setScene(change.scene, change.step == SceneChange::Step::another);
   probe_.setScene(change.scene);
+  gap_.setScene(change.scene);
   measure_.setScene(change.scene, change.surface);
   if (change.values) {
     parts_.status->showScene(change.scene.get());
@@ -371,7 +390,7 @@ void MainWindow::showScene(const SceneChange& change) {
 }
 
 void MainWindow::askStability() {
-  const bool wanted = view_.content() == Content::scene && parts_.display->shown(Layer::stability);
+  const bool wanted = view_.content() == Content::scene && parts_.display->isShown("stability");
   view_.showStability(nullptr); // The old map is invalid.
   feel_.stability().request(wanted ? edits_.scene() : nullptr);
 }

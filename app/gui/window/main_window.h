@@ -85,6 +85,7 @@ class MainWindow : public QMainWindow {
 
  private:
   void addMenus(); // In window_menus.cpp.
+  void searchActions();
   void connectFiles();
   void connectWelcome();
   void connectScene();
@@ -92,6 +93,7 @@ class MainWindow : public QMainWindow {
   void connectScan(); // In connect_scan.cpp.
   void tick();
   void hurry(); // Ticks as quickly as a camera motion is drawn, while the tool is dragged.
+  void showTool();
   void say(Message message);
   WindowState state() const;
   void refresh() { showState(state(), parts_, *this); }
@@ -108,6 +110,7 @@ class MainWindow : public QMainWindow {
   EditController edits_;
   PaintController paint_;
   ProbeController probe_;
+  GapFinder gap_{this};
   MeasureController measure_;
   SaveController saving_;
   DocumentController documents_;

@@ -69,7 +69,7 @@ FoldingTabs* makeSidePanel(const WindowParts& parts) {
         Panel::display, Panel::colors, Panel::device, Panel::objects, Panel::mesh})
     if (parts.panels.contains(card)) stack->addWidget(parts.panels.at(card));
   stack->addStretch(1);
-  parts.display->layout()->addWidget(parts.paint);
+  parts.display->addValues("paint", parts.paint);
   auto* scroll = new QScrollArea;
   scroll->setObjectName(QStringLiteral("cards"));
   applyCardStyle(*scroll);
@@ -136,11 +136,10 @@ WindowParts layOut(QMainWindow& window) {
                   {Panel::tool, parts.tool},        {Panel::brush, parts.brush},
                   {Panel::measure, parts.measure},  {Panel::colors, parts.colors},
                   {Panel::relief, parts.relief},    {Panel::touch, parts.haptics},
-                  {Panel::display, parts.display},  {Panel::paint, parts.paint},
-                  {Panel::device, parts.device},    {Panel::objects, parts.objects},
-                  {Panel::mesh, parts.mesh},        {Panel::forces, parts.force},
-                  {Panel::energy, parts.energy},    {Panel::history, parts.history},
-                  {Panel::messages, parts.messages}};
+                  {Panel::display, parts.display},  {Panel::device, parts.device},
+                  {Panel::objects, parts.objects},  {Panel::mesh, parts.mesh},
+                  {Panel::forces, parts.force},     {Panel::energy, parts.energy},
+                  {Panel::history, parts.history},  {Panel::messages, parts.messages}};
   parts.central_views = new QStackedWidget;
   parts.central_views->addWidget(parts.view);
   parts.scan = new ScanDesk(window);

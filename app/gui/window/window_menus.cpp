@@ -4,7 +4,6 @@
 #include <QDialog>
 #include <QDialogButtonBox>
 #include <QFile>
-#include <QKeyEvent>
 #include <QLineEdit>
 #include <QMenuBar>
 #include <QMessageBox>
@@ -21,6 +20,7 @@
 #include "app/gui/toolkit/card.h"
 #include "app/gui/toolkit/theme.h"
 #include "app/gui/toolkit/words.h"
+#include "app/gui/window/action_search.h"
 #include "app/gui/window/main_window.h"
 #include "core/version.h"
 #include "visualization/values/camera.h"
@@ -71,92 +71,6 @@ void showGuide(QWidget& over) {
   guide->activateWindow();
 }
 
-struct Found {
-  QString words;
-  QAction* action;
-};
-
-QString plain(QString words) {
-  return words.remove('&').remove(QStringLiteral("…"));
-}
-
-// Collects entries such as "File › Save workspace as".
-void collect(const QMenu& menu, const QString& above, std::vector<Found>& into) {
-  for (QAction* action : menu.actions()) {
-    if (action->isSeparator() || !action->isVisible()) continue;
-    const QString words = above + QStringLiteral(" › ") + plain(action->text());
-    if (action->menu())
-      collect(*action->menu(), words, into);
-    else
-      into.push_back({words, action});
-  }
-}
-
-// Lists the actions of all menus that contain all typed words, with their keys; disabled ones are
-// grey. Return or a click runs the selected action, Esc closes.
-class ActionSearch final : public QDialog {
- public:
-  explicit ActionSearch(QMainWindow& window) : QDialog(&window) {
-    setObjectName(QStringLiteral("action_search"));
-    setWindowTitle(tr("Search actions"));
-    setAttribute(Qt::WA_DeleteOnClose);
-    resize(520, 360);
-    for (QAction* entry : window.menuBar()->actions())
-      if (entry->menu()) collect(*entry->menu(), plain(entry->text()), all_);
-    line_->setPlaceholderText(tr("Search the actions"));
-    list_->setFocusPolicy(Qt::NoFocus);
-    auto* column = new QVBoxLayout(this);
-    column->addWidget(line_);
-    column->addWidget(list_);
-    connect(line_, &QLineEdit::textChanged, this, &ActionSearch::show);
-    connect(line_, &QLineEdit::returnPressed, this, &ActionSearch::act);
-    connect(list_, &QListWidget::itemClicked, this, &ActionSearch::act);
-    line_->installEventFilter(this);
-    show({});
-  }
-
- protected:
-  bool eventFilter(QObject*, QEvent* event) override {
-    if (event->type() != QEvent::KeyPress) return false;
-    const int key = static_cast<QKeyEvent*>(event)->key();
-    if (key != Qt::Key_Up && key != Qt::Key_Down) return false;
-    const int row = list_->currentRow() + (key == Qt::Key_Down ? 1 : -1);
-    list_->setCurrentRow(std::clamp(row, 0, std::max(0, list_->count() - 1)));
-    return true;
-  }
-
- private:
-  void show(const QString& typed) {
-    list_->clear();
-    const QStringList words = typed.split(' ', Qt::SkipEmptyParts);
-    for (std::size_t i = 0; i < all_.size(); ++i) {
-      const auto holds = [&](const QString& word) {
-        return all_[i].words.contains(word, Qt::CaseInsensitive);
-      };
-      if (!std::all_of(words.begin(), words.end(), holds)) continue;
-      const QString key = all_[i].action->shortcut().toString(QKeySequence::NativeText);
-      auto* item = new QListWidgetItem(
-          key.isEmpty() ? all_[i].words : all_[i].words + QStringLiteral("   ") + key, list_);
-      item->setData(Qt::UserRole, static_cast<int>(i));
-      if (!all_[i].action->isEnabled()) item->setFlags(Qt::NoItemFlags);
-    }
-    for (int row = 0; row < list_->count() && list_->currentRow() < 0; ++row)
-      if (list_->item(row)->flags() & Qt::ItemIsEnabled) list_->setCurrentRow(row);
-  }
-
-  void act() {
-    const QListWidgetItem* item = list_->currentItem();
-    if (!item || !(item->flags() & Qt::ItemIsEnabled)) return;
-    QAction* action = all_[static_cast<std::size_t>(item->data(Qt::UserRole).toInt())].action;
-    accept();
-    action->trigger();
-  }
-
-  std::vector<Found> all_;
-  QLineEdit* line_ = named(new QLineEdit(this), "action_words");
-  QListWidget* list_ = named(new QListWidget(this), "action_list");
-};
-
 QString shortcutsText() {
   return QMainWindow::tr(
       "<table cellspacing='6'>"
@@ -181,7 +95,7 @@ QString shortcutsText() {
       "friction, "
       "damping, roughness, erase</td></tr>"
       "<tr><td><b>Y Z</b></td><td>measure, pin</td></tr>"
-      "<tr><td><b>Ctrl + 0, 8, 9, 1, 2, 3</b></td><td>the desks Scan, Align, Texture, Feel, Paint, "
+      "<tr><td><b>Ctrl + 1 … 6</b></td><td>the desks Scan, Align, Texture, Feel, Paint, "
       "Analyse</td></tr>"
       "<tr><td><b>← →, Page up, down</b></td><td>one frame of a scan back or on, ten</td></tr>"
       "<tr><td><b>F4</b></td><td>switch the force off, and on again</td></tr>"
@@ -192,7 +106,7 @@ QString shortcutsText() {
       "<tr><td><b>Ctrl + Z, Ctrl + Shift + Z</b></td><td>undo, redo</td></tr>"
       "<tr><td><b>Ctrl + Shift + P</b></td><td>search the actions</td></tr>"
       "<tr><td><b>Ctrl + E</b></td><td>export or copy a picture</td></tr>"
-      "<tr><td><b>R</b></td><td>record the forces, and save them</td></tr></table>");
+      "<tr><td><b>Ctrl + R</b></td><td>record the forces, and save them</td></tr></table>");
 }
 
 QString signed_(ViewPreset preset) {
@@ -203,7 +117,7 @@ QString signed_(ViewPreset preset) {
 
 // Sets the tooltip: name, key and explanation.
 void describe(QAction& action) {
-  const QString words_only = plain(action.text());
+  const QString words_only = withoutMarks(action.text());
   const QString key = action.shortcut().toString(QKeySequence::NativeText);
   QString words = QStringLiteral("<b>%1</b>").arg(words_only);
   if (!key.isEmpty()) words += QStringLiteral(" (%1)").arg(key);
@@ -266,11 +180,12 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   parts.commands[Command::export_relief] = embossed;
   file->addAction(tr("&Export picture…"), &at.view, &ViewController::exportPicture,
                   QKeySequence("Ctrl+E"))
-      ->setToolTip(tr("PNG, TIFF, SVG or PDF at any size and resolution, with any background; or a copy"));
+      ->setToolTip(
+          tr("PNG, TIFF, SVG or PDF at any size and resolution, with any background; or a copy"));
   QAction* video = file->addAction(tr("Export &video…"), &at.view, &ViewController::exportVideo);
   named(video, "export_video", tr("Replays a recording over the open scene, as an .ogv file"));
   parts.commands[Command::export_video] = video;
-  QAction* record = addCheckable(*file, "record", tr("&Record forces"), Qt::Key_R,
+  QAction* record = addCheckable(*file, "record", tr("&Record forces"), QKeySequence("Ctrl+R"),
                                  tr("Records every tick, then saves a CSV table"));
   QObject::connect(record, &QAction::triggered, &at.feel, &FeelController::toggleRecording);
   parts.commands[Command::record] = record;
@@ -280,6 +195,8 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       tr("Switches the device's force off until you clear this option. The tool still follows the "
          "hand."));
   QObject::connect(none, &QAction::toggled, feel, [feel](bool on) { feel->setForce(!on); });
+  QObject::connect(feel, &FeelController::forceSet, none,
+                   [none](bool on) { none->setChecked(!on); });
   QAction* held =
       addCheckable(*file, "force_by_button", tr("Force only while a &button is held"), {},
                    tr("For devices with buttons: releasing the handle switches the force off"));
@@ -301,7 +218,7 @@ void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       tr("&Undo"), edits,
       [=] {
         if (AlignDesk* align = there()) return align->undo();
-        edits->thread().undo();
+        edits->undo();
       },
       QKeySequence::Undo);
   QAction* redo = edit->addAction(tr("&Redo"), edits, [=] {
@@ -329,30 +246,30 @@ void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   bar.addSeparator();
 }
 
-void addLayers(QMenu& menu, DisplayPanel* display) {
-  const std::pair<Layer, int> keys[] = {{Layer::mesh, Qt::Key_M},      {Layer::tip, Qt::Key_T},
-                                        {Layer::slice, Qt::Key_S},     {Layer::iso, Qt::Key_I},
-                                        {Layer::wireframe, Qt::Key_W}, {Layer::nodes, Qt::Key_N},
-                                        {Layer::band, Qt::Key_B},      {Layer::extent, Qt::Key_E},
-                                        {Layer::stability, Qt::Key_K}, {Layer::scale, Qt::Key_L}};
-  for (const auto& [layer, key] : keys) {
-    QAction* action = menu.addAction(tr("Show %1").arg(display->caption(layer).toLower()));
-    action->setCheckable(true);
-    action->setChecked(display->shown(layer));
-    action->setShortcut(key);
-    QObject::connect(action, &QAction::toggled, display,
-                     [display, layer = layer](bool on) { display->setShown(layer, on); });
-    QObject::connect(display, &DisplayPanel::layerToggled, action,
-                     [action, layer = layer](Layer toggled, bool on) {
-                       if (toggled == layer) action->setChecked(on);
+void addThings(QMenu& menu, DisplayPanel* display) {
+  const std::pair<const char*, QKeySequence> keys[] = {{"mesh", Qt::Key_M},
+                                                       {"tip", Qt::Key_T},
+                                                       {"slice", Qt::Key_S},
+                                                       {"iso", Qt::Key_I},
+                                                       {"wireframe", Qt::Key_W},
+                                                       {"nodes", Qt::Key_N},
+                                                       {"band", Qt::Key_B},
+                                                       {"extent", Qt::Key_E},
+                                                       {"stability", Qt::Key_K},
+                                                       {"scale", Qt::Key_L},
+                                                       {"clip", QKeySequence("Shift+S")}};
+  for (const auto& [thing, key] : keys) {
+    QAction* action = addCheckable(menu, (std::string("show_") + thing).c_str(),
+                                   tr("Show %1").arg(display->caption(thing).toLower()), key);
+    action->setChecked(display->isShown(thing));
+    QObject::connect(
+        action, &QAction::toggled, display,
+        [display, thing = std::string(thing)](bool on) { display->setShown(thing, on); });
+    QObject::connect(display, &DisplayPanel::shownChanged, action,
+                     [action, thing = std::string(thing)](const std::string& changed, bool on) {
+                       if (changed == thing) action->setChecked(on);
                      });
   }
-}
-
-void addClip(QMenu& menu, QCheckBox& box) {
-  QAction* clip = addCheckable(menu, "show_clip", tr("Show clip plane"), QKeySequence("Shift+S"));
-  QObject::connect(clip, &QAction::toggled, &box, &QCheckBox::setChecked);
-  QObject::connect(&box, &QCheckBox::toggled, clip, &QAction::setChecked);
 }
 
 void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at, QToolBar& bar) {
@@ -395,8 +312,7 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   });
   camera->menuAction()->setToolTip(tr("Look from a side: keys 1 to 7"));
   menu->addSeparator();
-  addLayers(*menu, parts.display);
-  addClip(*menu, parts.display->clip());
+  addThings(*menu, parts.display);
   menu->addSeparator();
   menu->addActions(at.desks.actions());
   QAction* guide =
@@ -435,7 +351,7 @@ void showShortcuts(QMainWindow* window) {
   dialog->open();
 }
 
-void addHelpMenu(QMainWindow* window) {
+void addHelpMenu(QMainWindow* window, const std::function<void()>& search) {
   QMenu* help = window->menuBar()->addMenu(tr("&Help"));
   const auto tell = [window](const QString& title, const QString& words) {
     auto* box = new QMessageBox(QMessageBox::NoIcon, title, words, QMessageBox::Ok, window);
@@ -444,9 +360,7 @@ void addHelpMenu(QMainWindow* window) {
   };
   help->addAction(tr("&User guide"), window, [window] { showGuide(*window); })
       ->setToolTip(tr("Describes each desk"));
-  help->addAction(
-      tr("&Search actions…"), window, [window] { (new ActionSearch(*window))->open(); },
-      Qt::CTRL | Qt::SHIFT | Qt::Key_P);
+  help->addAction(tr("&Search actions…"), window, search, Qt::CTRL | Qt::SHIFT | Qt::Key_P);
   help->addAction(
       tr("&Mouse and keys"), window, [window] { showShortcuts(window); }, Qt::Key_F1);
   help->addAction(tr("&About Patina"), window, [tell] {
@@ -458,6 +372,20 @@ void addHelpMenu(QMainWindow* window) {
 }
 
 } // namespace
+
+void MainWindow::searchActions() {
+  std::vector<ActionSearch::Settings> panels;
+  for (const auto& [panel, widget] : parts_.panels) {
+    const bool is_there =
+        std::any_of(deskRows().begin(), deskRows().end(), [&, panel = panel](const DeskRow& row) {
+          WindowState there = state();
+          there.desk = row.desk;
+          return isThere(panel, there);
+        });
+    if (tabOf(panel)) panels.push_back({panel, widget, is_there});
+  }
+  (new ActionSearch(*this, panels, [this](Panel panel) { desks_.show(panel); }))->open();
+}
 
 void MainWindow::addMenus() {
   QToolBar* bar = addToolBar(tr("View"));
@@ -479,7 +407,7 @@ void MainWindow::addMenus() {
   addFileMenu(*this, parts_, controllers(), *bar);
   addEditMenu(*this, parts_, controllers(), *bar);
   addViewMenu(*this, parts_, controllers(), *bar);
-  addHelpMenu(this);
+  addHelpMenu(this, [this] { searchActions(); });
   for (QAction* action : findChildren<QAction*>()) describe(*action);
 }
 

@@ -7,12 +7,16 @@
 #include <unordered_map>
 
 #include "geometry/measure/face_strip.h"
+#include "geometry/measure/mesh_part.h"
 
 namespace patina {
 namespace {
 
 // Points on each edge, besides its ends, over which the first path is searched.
 constexpr int kEdgePoints = 7;
+constexpr std::size_t kPollEach = 1024; // rounds of a search
+// Largest lengths of a path over the distance of its ends, tried in turn.
+constexpr double kDetours[] = {1.25, 2, 5};
 
 // A* (Hart et al. 1968) over vertices and edge points; straight distance is the lower bound.
 class EdgeSearch {
@@ -21,11 +25,12 @@ class EdgeSearch {
       : mesh_(mesh), neighbours_(neighbours), goal_(position(mesh, to)), goal_face_(to.face) {}
 
   // Returns the faces that the path crosses, as found; consecutive ones share an edge or a vertex.
-  std::vector<std::int32_t> facesFrom(const SurfacePoint& from) {
+  std::vector<std::int32_t> facesFrom(const SurfacePoint& from, const Progress& progress) {
     const Vec3 start = position(mesh_, from);
     if (from.face == goal_face_) return {from.face};
     relaxFace(from.face, -1, start, 0);
-    while (!queue_.empty()) {
+    for (std::size_t rounds = 0; !queue_.empty(); ++rounds) {
+      if (rounds % kPollEach == 0) progress.throwIfCancelled();
       const auto [estimate, key] = queue_.top();
       queue_.pop();
       Node& node = nodes_.at(key);
@@ -125,8 +130,9 @@ class EdgeSearch {
 } // namespace
 
 std::optional<SurfacePath> geodesicPath(const TriangleMesh& mesh, const Adjacency& neighbours,
-                                        const SurfacePoint& from, const SurfacePoint& to) {
-  const auto found = EdgeSearch(mesh, neighbours, to).facesFrom(from);
+                                        const SurfacePoint& from, const SurfacePoint& to,
+                                        const Progress& progress) {
+  const auto found = EdgeSearch(mesh, neighbours, to).facesFrom(from, progress);
   if (found.empty()) return std::nullopt;
   const StripWalker walker(mesh, neighbours);
   auto strip = walker.joined(found);
@@ -135,6 +141,7 @@ std::optional<SurfacePath> geodesicPath(const TriangleMesh& mesh, const Adjacenc
   StripPath best = shortestInStrip(mesh, *strip, start, end);
   for (bool shortened = true; shortened;) {
     shortened = false;
+    progress.throwIfCancelled();
     for (const StripCorner& corner : best.corners) {
       const auto other = walker.passedOnTheOtherSide(*strip, corner);
       if (!other) continue;
@@ -147,6 +154,23 @@ std::optional<SurfacePath> geodesicPath(const TriangleMesh& mesh, const Adjacenc
     }
   }
   return SurfacePath{std::move(best.points), best.length};
+}
+
+std::optional<SurfacePath> geodesicPath(const TriangleMesh& mesh, const SurfacePoint& from,
+                                        const SurfacePoint& to, const Progress& progress) {
+  const Vec3 start = position(mesh, from), end = position(mesh, to);
+  for (const double detour : kDetours) {
+    const double longest = detour * (end - start).norm();
+    const MeshPart part = partWithin(mesh, start, end, longest);
+    if (part.face.size() == mesh.triangles.size()) break;
+    progress.throwIfCancelled();
+    auto path = geodesicPath(part.mesh, adjacency(part.mesh), pointOfPart(part, from),
+                             pointOfPart(part, to), progress);
+    // A shorter path over other faces would lie within the part, too.
+    if (path && path->length <= longest) return path;
+  }
+  progress.throwIfCancelled();
+  return geodesicPath(mesh, adjacency(mesh), from, to, progress);
 }
 
 } // namespace patina

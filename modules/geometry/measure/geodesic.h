@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/progress.h"
 #include "geometry/mesh/adjacency.h"
 #include "geometry/mesh/triangle_mesh.h"
 
@@ -19,8 +20,15 @@ struct SurfacePath {
 // 2001) chooses on which side of vertices it begins; each vertex at which the path bends is then
 // passed on its other side if that is shorter, with the funnel algorithm (Lee & Preparata 1984) in
 // the unfolded faces. Between two geodesics whose lengths differ by less than about 0.1 % it may
-// choose the longer one. nullopt if no faces connect the points. Any thread.
+// choose the longer one. nullopt if no faces connect the points. Throws Cancelled. Any thread.
 std::optional<SurfacePath> geodesicPath(const TriangleMesh& mesh, const Adjacency& neighbours,
-                                        const SurfacePoint& from, const SurfacePoint& to);
+                                        const SurfacePoint& from, const SurfacePoint& to,
+                                        const Progress& progress = Progress());
+
+// The same without neighbours: these are made for the faces that a path of the found length can
+// reach, so that time and memory follow from the distance and not from the size of the mesh.
+std::optional<SurfacePath> geodesicPath(const TriangleMesh& mesh, const SurfacePoint& from,
+                                        const SurfacePoint& to,
+                                        const Progress& progress = Progress());
 
 } // namespace patina

@@ -447,7 +447,7 @@ std::uint64_t hashOf(const Vec3& p) {
   return hash;
 }
 
-bool isBefore(const Vec3& a, const Vec3& b) {
+bool isLess(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
@@ -480,7 +480,7 @@ std::vector<CopiedFace> findManyCopies(const std::vector<Vec3>& positions,
   }
   std::sort(many.begin(), many.end(), [](const Named& a, const Named& b) {
     for (std::size_t k = 0; k < 3; ++k)
-      if (a.corners[k] != b.corners[k]) return isBefore(a.corners[k], b.corners[k]);
+      if (a.corners[k] != b.corners[k]) return isLess(a.corners[k], b.corners[k]);
     return a.face < b.face;
   });
   std::vector<CopiedFace> copies;

@@ -449,6 +449,7 @@ struct EditThread::Impl {
       if (history.undoable() > 0) startAutosave();
       status.edits = history.descriptions();
       status.done = history.undoable();
+      status.previews = preview.has_value();
       status.unsaved = preview || (!ownsFolder() && never_saved) || saved_at != status.done;
       if (ownsFolder()) status.folder = edited->folder();
       status.folder_problem = folder_problem;

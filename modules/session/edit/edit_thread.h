@@ -23,6 +23,7 @@ namespace patina {
 struct EditStatus {
   std::vector<std::string> edits; // descriptions of all edits, oldest first
   std::size_t done = 0;           // number of applied edits; the others can be redone
+  bool previews = false;          // values are applied that are no edit yet: undo takes them back
   bool unsaved = false;
   std::optional<std::filesystem::path> folder{}; // absent: never saved by the user
   // Why the last step could not be written to the scene's folder, an autosave's too, and was taken

@@ -8,6 +8,7 @@
 #include "core/numbers.h"
 #include "geometry/measure/fit_shape.h"
 #include "geometry/measure/geodesic.h"
+#include "geometry/measure/mesh_part.h"
 #include "geometry/mesh/adjacency.h"
 #include "scene/surface_pick.h"
 
@@ -34,6 +35,19 @@ Measurement radiusOf(const char* what, double radius, double rms, std::size_t co
           false};
 }
 
+struct Patch {
+  MeshPart part;
+  MeshPatch faces; // its numbers are the part's
+};
+
+Patch patchOf(const CompiledScene& scene, const MeasuredPoint& point, double radius) {
+  const Vec3& at = point.position;
+  Patch patch{partWithin(*scene.mesh, at, at, 2 * radius), {}};
+  patch.faces = patchAround(patch.part.mesh, adjacency(patch.part.mesh),
+                            pointOfPart(patch.part, point.surface), radius);
+  return patch;
+}
+
 } // namespace
 
 MeasuredPoint measuredPointAt(const CompiledScene& scene, const Vec3& p) {
@@ -43,14 +57,14 @@ MeasuredPoint measuredPointAt(const CompiledScene& scene, const Vec3& p) {
 }
 
 Measurement measureDistance(const CompiledScene& scene, const MeasuredPoint& a,
-                            const MeasuredPoint& b) {
+                            const MeasuredPoint& b, const Progress& progress) {
   Measurement found;
   found.value = (b.position - a.position).norm();
   found.words = millimetres(found.value) + " straight";
   found.points = {a.position, b.position};
   found.line = found.points;
   if (a.surface.face < 0 || b.surface.face < 0) return found;
-  if (const auto path = geodesicPath(*scene.mesh, adjacency(*scene.mesh), a.surface, b.surface)) {
+  if (const auto path = geodesicPath(*scene.mesh, a.surface, b.surface, progress)) {
     found.words += ", " + millimetres(path->length) + " along the surface";
     // Both lines are drawn: there straight, and back along the surface.
     found.line.insert(found.line.end(), path->points.rbegin(), path->points.rend());
@@ -70,7 +84,7 @@ Measurement measureAngle(const MeasuredPoint& a, const MeasuredPoint& corner,
 
 Measurement measureSphere(const CompiledScene& scene, const MeasuredPoint& point, double radius) {
   if (point.surface.face < 0) return failure("click a mesh to fit a sphere to it", point);
-  const MeshPatch patch = patchAround(*scene.mesh, adjacency(*scene.mesh), point.surface, radius);
+  const MeshPatch patch = patchOf(scene, point, radius).faces;
   const auto sphere = fitSphere(patch.points);
   if (!sphere)
     return failure("no sphere fits " + formatCount(patch.points.size()) +
@@ -82,8 +96,8 @@ Measurement measureSphere(const CompiledScene& scene, const MeasuredPoint& point
 
 Measurement measureCylinder(const CompiledScene& scene, const MeasuredPoint& point, double radius) {
   if (point.surface.face < 0) return failure("click a mesh to fit a cylinder to it", point);
-  const MeshPatch patch = patchAround(*scene.mesh, adjacency(*scene.mesh), point.surface, radius);
-  const auto cylinder = fitCylinder(*scene.mesh, patch);
+  const auto [part, patch] = patchOf(scene, point, radius);
+  const auto cylinder = fitCylinder(part.mesh, patch);
   if (!cylinder)
     return failure("no cylinder fits " + formatCount(patch.points.size()) +
                        " vertices: choose a larger patch, or a curved place",

@@ -25,9 +25,9 @@ struct Measurement {
 // Returns the point of the mesh nearest to `p`, which lies on the surface to about a voxel.
 MeasuredPoint measuredPointAt(const CompiledScene& scene, const Vec3& p);
 
-// Straight, and along the surface by a geodesic of the mesh if both lie on it.
+// Straight, and along the surface by a geodesic of the mesh if both lie on it. Throws Cancelled.
 Measurement measureDistance(const CompiledScene& scene, const MeasuredPoint& a,
-                            const MeasuredPoint& b);
+                            const MeasuredPoint& b, const Progress& progress = Progress());
 // The angle is the one at the second point.
 Measurement measureAngle(const MeasuredPoint& a, const MeasuredPoint& corner,
                          const MeasuredPoint& b);

@@ -110,14 +110,17 @@ ToolLayer::ToolLayer(vtkRenderer& front, vtkRenderer& overlay)
       shaft_(unitRod(palette::kToolShaft)), ghost_(unitBall(palette::kGhost, 0.45)),
       spring_(unitRod(palette::kGhost)), stem_(unitRod(palette::kContactPoint)),
       contact_(unitBall(palette::kContactPoint, 1)), arrow_shaft_(unitRod(palette::kForce)),
-      arrow_head_(unitCone(palette::kForce)), label_(vtkSmartPointer<vtkTextActor>::New()) {
+      arrow_head_(unitCone(palette::kForce)), gap_(unitRod(palette::kGhost)),
+      label_(vtkSmartPointer<vtkTextActor>::New()),
+      gap_label_(vtkSmartPointer<vtkTextActor>::New()) {
   for (const auto& actor : {ball_, neck_, shaft_}) front.AddActor(actor);
-  for (const auto& actor : {spring_, stem_, ghost_, contact_, arrow_shaft_, arrow_head_})
+  for (const auto& actor : {spring_, stem_, ghost_, contact_, arrow_shaft_, arrow_head_, gap_})
     overlay.AddActor(actor);
-  vtkTextProperty* text = label_->GetTextProperty();
-  text->BoldOn();
-  text->SetVerticalJustificationToCentered();
-  overlay.AddActor2D(label_);
+  for (const auto& label : {label_, gap_label_}) {
+    label->GetTextProperty()->BoldOn();
+    label->GetTextProperty()->SetVerticalJustificationToCentered();
+    overlay.AddActor2D(label);
+  }
   place();
 }
 
@@ -126,8 +129,9 @@ void ToolLayer::setTipRadius(double radius) {
   place();
 }
 
-void ToolLayer::update(const ToolSample& sample) {
+void ToolLayer::update(const ToolSample& sample, const std::optional<Vec3>& nearest) {
   sample_ = sample;
+  nearest_ = nearest;
   place();
 }
 
@@ -150,6 +154,7 @@ void ToolLayer::setTextStyle(const TextStyle& letters) {
   TextStyle larger = letters;
   larger.size += 3;
   write(*label_->GetTextProperty(), larger, palette::kForce, true);
+  write(*gap_label_->GetTextProperty(), letters, palette::kGhost, true);
   shaft_->GetProperty()->SetColor(palette::forVtk(letters.ground.shaft));
 }
 
@@ -217,6 +222,25 @@ void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newto
   label_->SetPosition(std::round(at->x()) + beside, std::round(at->y()) + over);
 }
 
+// The line begins at the ball, if the tip is one, so that its length is the way to contact.
+void ToolLayer::placeGap() {
+  const bool free = visible_ && nearest_ && !sample_.contact && !sample_.attracted;
+  const Vec3 across = free ? Vec3(*nearest_ - sample_.tip) : Vec3::Zero();
+  const double gap = across.norm() - tip_radius_;
+  const bool shown = free && gap > 1e-3 * length_;
+  gap_->SetVisibility(shown);
+  const Vec3 begin = shown ? Vec3(*nearest_ - gap * across.normalized()) : Vec3::Zero();
+  const auto middle = shown ? inPicture((begin + *nearest_) / 2) : std::nullopt;
+  gap_label_->SetVisibility(middle.has_value());
+  if (!shown) return;
+  stretch(*gap_, begin, *nearest_, 0.0012 * length_);
+  if (!middle) return;
+  char words[32];
+  std::snprintf(words, sizeof words, " %.*f mm ", gap < 1e-3 ? 2 : 1, 1e3 * gap);
+  gap_label_->SetInput(words);
+  gap_label_->SetPosition(std::round(middle->x() + kBeside), std::round(middle->y()));
+}
+
 double ToolLayer::ballRadius() const {
   return tip_radius_ > 0 ? tip_radius_ : kPointRadius * length_;
 }
@@ -258,6 +282,7 @@ void ToolLayer::place() {
   contact_->SetVisibility(visible_ && near);
   stem_->SetVisibility(visible_ && near && apart);
   for (const auto& actor : {arrow_shaft_, arrow_head_}) actor->SetVisibility(visible_ && pushed);
+  placeGap();
   const auto number_at = pushed ? arrowEnd() : std::nullopt;
   label_->SetVisibility(number_at && inPicture(*number_at));
 }

@@ -25,7 +25,9 @@ class ToolLayer {
 
   // Tip radius [m]; 0 = a point, drawn as a ball of constant size in the picture.
   void setTipRadius(double radius);
-  void update(const ToolSample& sample);
+  // `nearest`: the surface point nearest to a free tip, to which a line with its length is drawn.
+  void update(const ToolSample& sample, const std::optional<Vec3>& nearest = {});
+  const std::optional<Vec3>& nearest() const { return nearest_; }
   // The shaft leans towards the viewer's upper right, so that it never hides its own tip. Shaft and
   // arrow keep their size in the picture.
   void faceCamera(vtkCamera& camera);
@@ -43,13 +45,15 @@ class ToolLayer {
   // Position in pixels for the overlay's camera; nullopt if there is no picture.
   std::optional<Vec2> inPicture(const Vec3& p) const;
   bool isOutside(const Vec3& p) const;
+  void placeGap();
   void placeNumber(const Vec3& end, const Vec3& direction, double newtons);
 
   vtkRenderer& overlay_;
   vtkSmartPointer<vtkActor> ball_, neck_, shaft_; // the proxy
-  vtkSmartPointer<vtkActor> ghost_, spring_, stem_, contact_, arrow_shaft_, arrow_head_;
-  vtkSmartPointer<vtkTextActor> label_;
+  vtkSmartPointer<vtkActor> ghost_, spring_, stem_, contact_, arrow_shaft_, arrow_head_, gap_;
+  vtkSmartPointer<vtkTextActor> label_, gap_label_;
   ToolSample sample_;
+  std::optional<Vec3> nearest_;
   Vec3 right_ = Vec3::UnitX(); // picture's right in the world
   bool leftwards_ = false;     // the number is left of its arrow
   Vec3 lean_ = Vec3(0.4, 0.7, 0.6).normalized();

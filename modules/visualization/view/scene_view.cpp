@@ -301,8 +301,7 @@ void SceneView::Impl::aimTool() {
   const Ray ray = rayThrough(camera(), 0, 0);
   const auto hit = firstSurfaceAlong(*field, ray.origin, ray.direction);
   if (!hit) return;
-  sample.emplace();
-  sample->tip = sample->vcp = sample->surface = *hit;
+  sample = ToolSample{.tip = *hit, .vcp = *hit, .surface = *hit};
   tool.update(*sample);
   nodes_stale = true;
 }
@@ -497,13 +496,14 @@ void SceneView::setTipRadius(double radius) {
   my_->dirty = true;
 }
 
-void SceneView::setTool(const ToolSample& sample) {
+void SceneView::setTool(const ToolSample& sample, const std::optional<Vec3>& nearest) {
   const bool first = !my_->sample.has_value();
   if (!first && my_->sample->tip == sample.tip && my_->sample->vcp == sample.vcp &&
-      my_->sample->force == sample.force && my_->sample->surface == sample.surface)
+      my_->sample->force == sample.force && my_->sample->surface == sample.surface &&
+      my_->tool.nearest() == nearest)
     return;
   my_->sample = sample;
-  my_->tool.update(sample);
+  my_->tool.update(sample, nearest);
   if (first) my_->applyVisibility();
   my_->nodes_stale = my_->front_dirty = true;
 }

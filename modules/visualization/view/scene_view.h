@@ -84,7 +84,8 @@ class SceneView {
   void setMirror(const std::optional<MirrorState>& place);     // mirror of strokes; nullopt: none
   void setAnnotations(const std::vector<Annotation>& annotations); // measurements and pins
   void setTipRadius(double radius); // [m]; 0 = a point, drawn as a small sphere
-  void setTool(const ToolSample& sample);
+  // See ToolLayer::update().
+  void setTool(const ToolSample& sample, const std::optional<Vec3>& nearest = {});
 
   void show(Layer layer, bool on);
   void showOnly(const std::set<Layer>& layers);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -20,6 +21,31 @@ Figure withEvenSides(Figure figure) {
   figure.height += figure.height % 2;
   return figure;
 }
+
+namespace {
+
+// Returns whether a file ends with the last page of an Ogg stream. The writer does not notice a
+// full disk.
+bool endsAsOgg(const std::filesystem::path& path) {
+  constexpr std::size_t kHeader = 27, kLongestPage = kHeader + 255 + 255 * 255; // RFC 3533
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const auto size = static_cast<std::size_t>(std::max<std::streamoff>(0, file.tellg()));
+  std::string end(std::min(size, kLongestPage), '\0');
+  file.seekg(static_cast<std::streamoff>(size - end.size()));
+  file.read(end.data(), static_cast<std::streamsize>(end.size()));
+  const std::size_t page = end.rfind("OggS");
+  if (!file || page == std::string::npos || end.size() < page + kHeader) return false;
+  const auto byte = [&](std::size_t i) -> std::size_t {
+    return i < end.size() ? static_cast<unsigned char>(end[i]) : 0;
+  };
+  const std::size_t segments = byte(page + 26);
+  std::size_t length = kHeader + segments;
+  for (std::size_t i = 0; i < segments; ++i) length += byte(page + kHeader + i);
+  constexpr std::size_t kEndOfStream = 4;
+  return (byte(page + 5) & kEndOfStream) != 0 && page + length == end.size();
+}
+
+} // namespace
 
 struct VideoWriter::Impl {
   SceneView& view;
@@ -90,11 +116,8 @@ bool VideoWriter::writeNext() {
   my_->add(my_->stage.draw());
   if (++my_->written < my_->frames) return true;
   my_->writer->End();
+  if (!endsAsOgg(my_->partial)) my_->fail();
   std::error_code failed;
-  // The writer does not notice a full disk.
-  constexpr std::uintmax_t kLeastRoom = 1 << 16; // [bytes]
-  const auto room = std::filesystem::space(std::filesystem::absolute(my_->partial), failed);
-  if (!failed && room.available < kLeastRoom) my_->fail();
   std::filesystem::rename(my_->partial, my_->path, failed);
   if (failed || my_->writer->GetError() != 0) my_->fail();
   return false;

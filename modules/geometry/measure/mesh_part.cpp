@@ -1,0 +1,35 @@
+#include "geometry/measure/mesh_part.h"
+
+#include <algorithm>
+
+namespace patina {
+
+MeshPart partWithin(const TriangleMesh& mesh, const Vec3& a, const Vec3& b, double longest) {
+  MeshPart part;
+  std::vector<std::int32_t> vertex(mesh.positions.size(), -1); // in the part
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const Vec3 centre = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
+    double radius = 0;
+    for (int k = 0; k < 3; ++k) radius = std::max(radius, (mesh.corner(f, k) - centre).norm());
+    if (!((centre - a).norm() + (centre - b).norm() - 2 * radius <= longest)) continue;
+    part.face.push_back(static_cast<std::int32_t>(f));
+    std::array<std::int32_t, 3>& corners = part.mesh.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t whole = mesh.triangles[f][k];
+      std::int32_t& own = vertex[static_cast<std::size_t>(whole)];
+      if (own < 0) {
+        own = static_cast<std::int32_t>(part.mesh.positions.size());
+        part.mesh.positions.push_back(mesh.positions[static_cast<std::size_t>(whole)]);
+      }
+      corners[k] = own;
+    }
+  }
+  return part;
+}
+
+SurfacePoint pointOfPart(const MeshPart& part, const SurfacePoint& point) {
+  const auto at = std::lower_bound(part.face.begin(), part.face.end(), point.face);
+  return {static_cast<std::int32_t>(at - part.face.begin()), point.barycentric};
+}
+
+} // namespace patina
