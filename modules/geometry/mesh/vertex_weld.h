@@ -78,7 +78,7 @@ class VertexWeld {
 
 // Returns the triangles of a mesh with the first vertex at each position for all that are there.
 inline std::vector<Triangle> weldedTriangles(const TriangleMesh& mesh) {
-  constexpr std::size_t kMost = std::size_t{1} << 28; // so that hashes have 32 bits
+  constexpr std::size_t kMost = std::size_t{1} << 28; // Then hashes have 32 bits.
   // Finds the hashes that occur more than once by bits that fit into the cache: most vertices of a
   // sound mesh are known to be alone by these.
   const std::size_t mask = std::bit_ceil(8 * std::min(mesh.positions.size(), kMost) + 64) - 1;
