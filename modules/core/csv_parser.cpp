@@ -163,12 +163,15 @@ bool CsvParser::take(std::string_view line, std::vector<double>& row) {
   return true;
 }
 
-// A number begins with neither # nor %, but the text of a first column that nobody reads may.
+// A number begins with neither # nor %, but the text of a first column that nobody reads may: "#8"
+// is such a text where there are more cells, and "# 8" where there are as many as columns.
 bool CsvParser::isComment(std::string_view line) const {
   const std::string_view text = trimmed(line);
-  return (text.starts_with('#') || text.starts_with('%')) &&
-         (cells_.front().target < 0 ? cellsOf(line, separator_).size() != cells_.size()
-                                    : !isMissing(trimmed(text.substr(0, text.find(separator_)))));
+  if (!text.starts_with('#') && !text.starts_with('%')) return false;
+  if (cells_.front().target >= 0) return !isMissing(trimmed(text.substr(0, text.find(separator_))));
+  const bool is_word = text.size() > 1 && text[1] != ' ' && text[1] != '\t' && text[1] != text[0];
+  const bool has_cells = text.find(separator_) != text.npos;
+  return is_word ? !has_cells : cellsOf(line, separator_).size() != cells_.size();
 }
 
 // Sets the target of the cell that holds the wanted column: the one with the same name and unit,

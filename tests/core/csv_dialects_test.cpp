@@ -89,6 +89,7 @@ TEST(CsvDialects, SameTableIsReadInTheDialectOfEachProgram) {
       "t [s],x [m],y [m],z [m],note\n0,1.5,-2.25,3,\"first, of "
       "two\"\n0.25,4,5.125,-6e-3,12.05.2024\n",
       "note,t [s],x [m],y [m],z [m]\n%7,0,1.5,-2.25,3\n% of 4, or more\n#8,0.25,4,5.125,-6e-3\n",
+      "note,t [s],x [m],y [m],z [m]\n#7,0,1.5,-2.25,3,\n# of 4\n#8,0.25,4,5.125,-6e-3,\n",
       "t [s],x [m],y [m],z [m],tip\n0,1.5,-2.25,3,5\" ball\n0.25,4,5.125,-6e-3,3\"\n",
       "date;t [s];x [m];y [m];z [m]\n12.05.2024;0;1,5;-2,25;3\n12.05.2024;0,25;4;5,125;-6e-3\n",
   };
@@ -197,6 +198,7 @@ TEST(CsvDialects, FaultsAreNamed) {
   says(head + "0;1,5;3\n", "a.csv:2: 3 values where the header names 4, separated by semicolons");
   says(head + "0;1,5;3;4;5\n", "a.csv:2: 5 values where the header names 4");
   says("t [s],x [m],y [m],z [m]\n0,\"1,5\",2,x\n", "a.csv:2: z [m]: 'x' is not a number");
+  says("note,t [s],x [m],y [m],z [m]\n#8,0.25,4\n", "a.csv:2: 3 values where the header names 5");
   const std::string open_quote = ": a quoted cell does not end in this line: remove the line break";
   says("\"t\n[s]\",x [m],y [m],z [m]\n0,1,2,3\n", "a.csv:1" + open_quote);
   says(head + "0;1;2;3\n0;1;2;\"3\n\"\n", "a.csv:3" + open_quote);

@@ -128,5 +128,32 @@ TEST_F(KeptPicture, ShowsATipThatLeavesTheRangeOfDepth) {
   EXPECT_LT(tool(), 50);
 }
 
+// Nothing is drawn again at rest, wherever the tool is.
+TEST_F(KeptPicture, IsAtRestWhileTheToolIsBehindTheCamera) {
+  TouchedBall shown;
+  shown.moveTool(-1, 0);
+  (void)shown.draw();
+  EXPECT_FALSE(shown.view.prepare());
+}
+
+TEST_F(KeptPicture, IsDrawnAnewInAWindowThatHasAnotherSizeSince) {
+  TouchedBall shown;
+  for (int i = 0; i < 3; ++i) {
+    shown.moveTool(-0.04, 0.001 * i);
+    (void)shown.draw();
+  }
+  EXPECT_TRUE(shown.view.keepsBodies());
+  shown.window->SetSize(400, 300);
+  shown.window->Render(); // the window system redraws before anything is prepared
+  EXPECT_FALSE(shown.view.keepsBodies());
+  const vtkNew<vtkUnsignedCharArray> pixels;
+  shown.window->GetPixelData(0, 0, 399, 299, 0, pixels);
+  int surface = 0;
+  for (vtkIdType i = 0; i + 2 < pixels->GetNumberOfValues(); i += 3)
+    surface +=
+        isSurface(Vec3(pixels->GetValue(i), pixels->GetValue(i + 1), pixels->GetValue(i + 2)));
+  EXPECT_GT(surface, 10000);
+}
+
 } // namespace
 } // namespace patina

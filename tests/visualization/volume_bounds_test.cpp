@@ -120,12 +120,28 @@ TEST_F(VolumeBounds, ArraysThatTheFileCannotHoldAreRefused) {
 
 TEST_F(VolumeBounds, PiecesThatAreNotInTheirVolumeAreRefused) {
   const std::string whole = volume(points("type=\"Float64\"", "1 2 3 4 5 6 7 8"));
-  for (const char* extent : {"0 2 0 1 0 1", "-1 1 0 1 0 1", "1 0 0 1 0 1", "0 1 0 1 0", ""}) {
+  for (const char* extent : {"0 2 0 1 0 1", "-1 1 0 1 0 1", "1 0 0 1 0 1", "0 1 0 1 0", "",
+                             "0 1 0 -1 0 1", "0 -1 0 -1 0 -1"}) {
     std::string bytes = whole;
     const std::size_t at = bytes.find("Piece Extent=\"") + 14;
     bytes.replace(at, bytes.find('"', at) - at, extent);
     EXPECT_NE(refusal(bytes).find("Extent"), std::string::npos) << extent;
   }
+}
+
+TEST_F(VolumeBounds, WhatVtkReadsIsRead) {
+  const std::string whole = volume(points("type=\"Float64\"", "1 2 3 4 5 6 7 8"));
+  const auto isRead = [&](const std::string& before, const std::string& added) {
+    std::string bytes = whole;
+    bytes.insert(bytes.find(before), added);
+    EXPECT_EQ(scalarRange(write(bytes)).high, 8) << added;
+  };
+  const std::string data = "<FieldData><DataArray type=\"Float64\" Name=\"a\" "
+                           "NumberOfTuples=\"1\" format=\"ascii\">1</DataArray></FieldData>";
+  isRead("<Piece", data);
+  isRead("</ImageData", data);
+  isRead("</ImageData", "<Piece Extent=\"0 -1 0 -1 0 -1\"><PointData/></Piece>");
+  isRead("Extent=\"0 1 0 1 0 1\">\n<PointData", "Name=\"p>0\" ");
 }
 
 // VTK reads an array that it could not make.
@@ -207,8 +223,8 @@ TEST_F(VolumeBounds, BlocksThatCannotBeAreFoundWhereTheReaderFindsThem) {
        {changed("format=\"appended\"", "format=\"binary\""),
         changed("offset=\"0\"", "offset=\"0x\""),
         changed("<ImageData ", "<!-- <AppendedData>_ --><ImageData "),
-        changed("<Piece ", "<Piece a=\">\" "), changed("<ImageData ", "<VTKFile/><ImageData "),
-        changed("\">\n   _", "\">\n   W_")})
+        changed("<AppendedData ", "<AppendedData a=\">\" "),
+        changed("<ImageData ", "<VTKFile/><ImageData "), changed("\">\n   _", "\">\n   W_")})
     EXPECT_NE(refusal(bytes).find("truncated or damaged: "), std::string::npos);
 }
 

@@ -251,8 +251,8 @@ std::string placeOf(const std::filesystem::path& path, const OnFile<Value>& file
   const auto after = std::find_if(file.values.begin(), file.values.end(), [&](const Value& value) {
     return (clock ? clock->onCamera(value.t) : value.t) >= gap.to;
   });
-  return path.string() + ":" +
-         std::to_string(file.lines.at(static_cast<std::size_t>(after - file.values.begin())));
+  const auto at = static_cast<std::size_t>(after - file.values.begin());
+  return path.string() + ":" + std::to_string(file.lines.at(std::min(at, file.lines.size() - 1)));
 }
 
 template <class Value>

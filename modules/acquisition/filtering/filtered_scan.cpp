@@ -112,7 +112,8 @@ FilteredScan filteredStreams(const std::vector<CameraPose>& poses,
     requireUsedPose(poses, track);
     ClockFit clock = fitClock(track, poses, samples, probe, options, progress, rates);
     if (!clock.doubt.empty()) scan.warnings.push_back(std::move(clock.doubt));
-    if (clock.clock && clock.clock->isKnown()) scan.clock = clock.clock;
+    if (clock.clock && (clock.clock->isKnown() || clock.clock->is_significant))
+      scan.clock = clock.clock;
     std::vector<ProbeSample> corrected = samples;
     std::vector<RateSample> turning = rates;
     if (clock.clock && clock.clock->is_significant)

@@ -30,7 +30,7 @@ struct FilteredScan {
   // samples on the camera's clock. Both are empty for the other models.
   std::vector<PathSample> whole;
   std::vector<ProbeSample> samples;
-  std::optional<ProbeClock> clock;  // absent unless known; applied if it differs
+  std::optional<ProbeClock> clock;  // absent unless known or applied; applied if it differs
   std::array<double, 4> axis_nis{}; // see FusedPath, also for pose_nis; 0 if not used
   double pose_nis = 0;
   std::vector<std::string> warnings; // reasons why the result may be wrong

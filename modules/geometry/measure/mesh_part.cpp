@@ -1,6 +1,7 @@
 #include "geometry/measure/mesh_part.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace patina {
 
@@ -11,7 +12,9 @@ MeshPart partWithin(const TriangleMesh& mesh, const Vec3& a, const Vec3& b, doub
     const Vec3 centre = (mesh.corner(f, 0) + mesh.corner(f, 1) + mesh.corner(f, 2)) / 3;
     double radius = 0;
     for (int k = 0; k < 3; ++k) radius = std::max(radius, (mesh.corner(f, k) - centre).norm());
-    if (!((centre - a).norm() + (centre - b).norm() - 2 * radius <= longest)) continue;
+    if (!((centre - a).norm() + (centre - b).norm() - 2 * radius <=
+          longest + 1e-9 * radius)) // a point of the face may lie off it by rounding
+      continue;
     part.face.push_back(static_cast<std::int32_t>(f));
     std::array<std::int32_t, 3>& corners = part.mesh.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
@@ -29,6 +32,8 @@ MeshPart partWithin(const TriangleMesh& mesh, const Vec3& a, const Vec3& b, doub
 
 SurfacePoint pointOfPart(const MeshPart& part, const SurfacePoint& point) {
   const auto at = std::lower_bound(part.face.begin(), part.face.end(), point.face);
+  if (at == part.face.end() || *at != point.face)
+    throw std::invalid_argument("pointOfPart: the part lacks the point's face");
   return {static_cast<std::int32_t>(at - part.face.begin()), point.barycentric};
 }
 

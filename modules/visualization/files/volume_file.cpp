@@ -80,7 +80,8 @@ Extent extentOf(std::string_view tag, const std::string& name, const std::filesy
   Extent extent{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double &low = extent[2 * axis], &high = extent[2 * axis + 1];
-    if (!(numbers >> low >> high) || high < low)
+    if (!(numbers >> low >> high)) high = low - 2;
+    if (high < low && !(name == "Extent" && low == 0 && high == -1))
       throw FileError(path.string(), 0, "has an " + name + " that is not six ascending numbers");
   }
   return extent;
@@ -94,9 +95,14 @@ double nodesIn(const Extent& extent, const std::filesystem::path& path) {
   return nodes;
 }
 
+// VTK writes such pieces where a grid has fewer than are asked for.
+constexpr Extent kEmpty{0, -1, 0, -1, 0, -1};
+
 bool contains(const Extent& whole, const Extent& part) {
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (part[2 * axis] < whole[2 * axis] || part[2 * axis + 1] > whole[2 * axis + 1]) return false;
+    if (part[2 * axis] < whole[2 * axis] || part[2 * axis + 1] > whole[2 * axis + 1] ||
+        part[2 * axis + 1] < part[2 * axis])
+      return false;
   return true;
 }
 
@@ -222,24 +228,39 @@ bool isArray(std::string_view tag) {
   return tag.starts_with("DataArray") || tag.starts_with("Array");
 }
 
+// Depths of the elements that are open; -2 where there is none.
+struct OpenElements {
+  int piece = -2, field = -2, section = -2;
+
+  void leave(int depth) { // a tag at this depth begins
+    for (int* open : {&piece, &field, &section})
+      if (depth <= *open) *open = -2;
+  }
+};
+
 // Checks the header first, because the reader calls itself for nested elements and allocates what
 // the header requests.
 void checkHeader(const std::filesystem::path& path) {
   checkKind(path);
   double nodes = 0, expansion = 8, field_bytes = 0, piece_bytes = 0, most_bytes = 0;
-  bool in_piece = false, in_field = false;
+  OpenElements open;
+  bool has_nodes = false;
   Extent whole{};
   BlockCheck blocks(path);
-  forEachTag(path, [&](std::string_view tag, std::uint64_t after) {
+  forEachTag(path, [&](std::string_view tag, std::uint64_t after, int depth) {
     blocks.take(tag, after);
-    // The reader takes whatever has a name for an array.
-    if (attributeOf(tag, "Name").data() != nullptr && !isArray(tag))
+    open.leave(depth);
+    // The reader takes a named child of these for an array.
+    const bool of_field = depth == open.field + 1;
+    if (!isArray(tag) &&
+        (of_field || (depth == open.section + 1 && attributeOf(tag, "Name").data() != nullptr)))
       throw FileError(path.string(), 0,
-                      "cannot be read: truncated or damaged: a named element is no array");
+                      "cannot be read: truncated or damaged: its " +
+                          std::string(of_field ? "FieldData hold no array" : "data hold no array"));
     if (tag.starts_with("FieldData")) {
-      in_field = true;
+      open.field = depth;
     } else if (tag.starts_with("PointData") || tag.starts_with("CellData")) {
-      in_field = false;
+      open.section = depth;
     } else if (tag.starts_with("VTKFile")) {
       expansion = mostExpansion(attributeOf(tag, "compressor"));
     } else if (tag.starts_with("ImageData")) {
@@ -248,12 +269,14 @@ void checkHeader(const std::filesystem::path& path) {
       checkThree(tag, "Spacing", true, path);
       checkThree(tag, "Origin", false, path);
     } else if (tag.starts_with("Piece")) {
-      in_piece = true;
-      in_field = false;
-      if (!contains(whole, extentOf(tag, "Extent", path)))
+      open.piece = depth;
+      const Extent part = extentOf(tag, "Extent", path);
+      has_nodes = has_nodes || part != kEmpty;
+      if (part != kEmpty && !contains(whole, part))
         throw FileError(path.string(), 0, "has a piece whose Extent is not in its WholeExtent");
       piece_bytes = 0;
     } else if (isArray(tag)) {
+      const bool in_piece = open.piece > -2;
       const double components = parseNumber(attributeOf(tag, "NumberOfComponents")).value_or(1);
       const double tuples = parseNumber(attributeOf(tag, "NumberOfTuples")).value_or(0);
       const double bytes = (in_piece ? nodes : std::abs(tuples)) *
@@ -261,12 +284,10 @@ void checkHeader(const std::filesystem::path& path) {
                            bytesOfType(attributeOf(tag, "type"), path);
       (in_piece ? piece_bytes : field_bytes) += bytes;
       most_bytes = std::max(most_bytes, field_bytes + piece_bytes);
-    } else if (in_field && !tag.starts_with("InformationKey") && !tag.starts_with("Value")) {
-      throw FileError(path.string(), 0,
-                      "cannot be read: truncated or damaged: its FieldData hold no array");
     }
   });
   if (nodes == 0) throw FileError(path.string(), 0, "has no WholeExtent");
+  if (!has_nodes) throw FileError(path.string(), 0, "has no piece with an Extent of nodes");
   constexpr double kSlack = 65536;
   const auto size = static_cast<double>(std::filesystem::file_size(path));
   if (!(most_bytes <= expansion * size + kSlack))

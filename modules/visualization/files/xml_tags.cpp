@@ -70,13 +70,19 @@ class TagScan {
     in_markup_ = false;
   }
 
-  // A reader that searches bytes instead of tags would take either for the end of a tag or for the
-  // appended data.
+  // A reader that searches bytes instead of tags would take either for the end of a tag, behind
+  // which data begin, or for the appended data.
   void refuseHiddenMarkup() const {
-    const bool is_text = markup_.starts_with("!--") || markup_.starts_with('?');
-    if (markup_.find("<AppendedData") != markup_.npos ||
-        (!is_text && markup_.find('>') != markup_.npos))
-      fail("a tag stands in a comment or an attribute");
+    if (markup_.starts_with("!--") || markup_.starts_with('?')) {
+      if (markup_.find("<AppendedData") != markup_.npos) fail("a comment holds <AppendedData");
+      return;
+    }
+    const bool has_data =
+        markup_.starts_with("AppendedData") || (attributeOf(markup_, "format").data() != nullptr &&
+                                                attributeOf(markup_, "offset").data() == nullptr);
+    if (has_data && markup_.find('>') != markup_.npos)
+      fail("an attribute has '>' before data: write &gt;");
+    if (markup_.find("<AppendedData") != markup_.npos) fail("an attribute holds <AppendedData");
   }
 
   void finishMarkup() {
@@ -90,7 +96,7 @@ class TagScan {
     }
     appended_ = markup_.starts_with("AppendedData");
     if (++elements_ > kMaxElements) fail("it has more than 10000 elements");
-    visit_(markup_, position_);
+    visit_(markup_, position_, depth_);
     if (!markup_.ends_with('/') && ++depth_ > kMaxDepth)
       fail("its elements are nested more than 32 levels deep");
   }

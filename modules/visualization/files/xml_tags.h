@@ -9,13 +9,13 @@
 
 namespace patina {
 
-// Calls visit for each start tag, without its angle brackets, and with the offset of what follows
-// it in the file. <AppendedData> is the last one, since its bytes are not XML. Reads the file in
-// parts. Throws FileError if elements are nested deeper than 32 levels
-// or remain open at the end, for more than 10000 elements, a tag of more than 8 kB, more than 4 MB
-// of tags and comments, and for a document type, CDATA, '>' in an attribute or <AppendedData in a
-// comment.
-using VisitTag = std::function<void(std::string_view tag, std::uint64_t after)>;
+// Calls visit for each start tag, without its angle brackets, with the offset of what follows it in
+// the file and the number of elements that it stands in. <AppendedData> is the last one, since its
+// bytes are not XML. Reads the file in parts. Throws FileError if elements are nested deeper than
+// 32 levels or remain open at the end, for more than 10000 elements, a tag of more than 8 kB, more
+// than 4 MB of tags and comments, and for a document type, CDATA, '>' in an attribute of a tag
+// before data, or <AppendedData in a comment.
+using VisitTag = std::function<void(std::string_view tag, std::uint64_t after, int depth)>;
 void forEachTag(const std::filesystem::path& path, const VisitTag& visit);
 
 // Returns the value of an attribute of a tag; empty if there is none.

@@ -1,11 +1,20 @@
 #include "visualization/view/kept_picture.h"
 
+#include <array>
+
+#include <vtkCameraPass.h>
 #include <vtkCommand.h>
+#include <vtkLightsPass.h>
 #include <vtkObjectFactory.h>
+#include <vtkOpaquePass.h>
 #include <vtkOpenGLFramebufferObject.h>
 #include <vtkOpenGLRenderWindow.h>
 #include <vtkOpenGLState.h>
+#include <vtkOverlayPass.h>
+#include <vtkRenderPassCollection.h>
 #include <vtkRenderState.h>
+#include <vtkSequencePass.h>
+#include <vtkTranslucentPass.h>
 
 namespace patina {
 namespace {
@@ -14,14 +23,30 @@ constexpr unsigned kColorAndDepth = 0x4000 | 0x0100, kUnscaled = 0x2600, kScisso
 
 } // namespace
 
+vtkSmartPointer<vtkRenderPass> bodiesPass() {
+  const vtkNew<vtkRenderPassCollection> passes;
+  passes->AddItem(vtkNew<vtkLightsPass>());
+  passes->AddItem(vtkNew<vtkOpaquePass>());
+  passes->AddItem(vtkNew<vtkTranslucentPass>());
+  const vtkNew<vtkSequencePass> sequence;
+  sequence->SetPasses(passes);
+  auto bodies = vtkSmartPointer<vtkCameraPass>::New();
+  bodies->SetDelegatePass(sequence);
+  return bodies;
+}
+
 class KeptPicture::Pass : public vtkRenderPass {
  public:
   static Pass* New() { VTK_STANDARD_NEW_BODY(Pass); }
 
   void Render(const vtkRenderState* state) override {
     auto* window = windowOf(*state->GetRenderer());
-    copy(*window, *copy_, *window->GetRenderFramebuffer());
     NumberOfRenderedProps = 0;
+    if (has_ && window == window_ && sizeOf(*window) == size_)
+      return copy(*window, *copy_, *window->GetRenderFramebuffer());
+    has_ = false; // the window has another size since, or is another
+    bodies_->Render(state);
+    texts_->Render(state);
   }
 
   void keep(vtkRenderer& renderer) {
@@ -32,10 +57,18 @@ class KeptPicture::Pass : public vtkRenderPass {
     copy_->PopulateFramebuffer(size[0], size[1], true, 1, VTK_UNSIGNED_CHAR, true, 32, 0,
                                window->GetStencilCapable() != 0);
     copy(*window, *window->GetRenderFramebuffer(), *copy_);
+    window_ = window;
+    size_ = sizeOf(*window);
+    has_ = true;
   }
+  void drop() { has_ = false; }
+  bool has() const { return has_; }
 
   void ReleaseGraphicsResources(vtkWindow* window) override {
+    has_ = false;
     copy_->ReleaseGraphicsResources(window);
+    bodies_->ReleaseGraphicsResources(window);
+    texts_->ReleaseGraphicsResources(window);
     vtkRenderPass::ReleaseGraphicsResources(window);
   }
 
@@ -64,7 +97,16 @@ class KeptPicture::Pass : public vtkRenderPass {
     gl->vtkglScissor(0, 0, size[0], size[1]);
   }
 
+  static std::array<int, 2> sizeOf(vtkOpenGLRenderWindow& window) {
+    return {window.GetSize()[0], window.GetSize()[1]};
+  }
+
   vtkNew<vtkOpenGLFramebufferObject> copy_;
+  vtkSmartPointer<vtkRenderPass> bodies_ = bodiesPass();
+  vtkNew<vtkOverlayPass> texts_;
+  const vtkOpenGLRenderWindow* window_ = nullptr; // shown in the copy
+  std::array<int, 2> size_{};
+  bool has_ = false;
 };
 
 KeptPicture::KeptPicture(vtkRenderer& renderer)
@@ -80,7 +122,6 @@ void KeptPicture::ended() {
   if (!wanted_) return;
   pass_->keep(renderer_);
   wanted_ = false;
-  has_ = true;
 }
 
 void KeptPicture::keepNext() {
@@ -88,11 +129,12 @@ void KeptPicture::keepNext() {
 }
 
 void KeptPicture::drop() {
-  wanted_ = has_ = false;
+  wanted_ = false;
+  pass_->drop();
 }
 
 bool KeptPicture::has() const {
-  return has_;
+  return pass_->has();
 }
 
 vtkRenderPass& KeptPicture::pass() const {

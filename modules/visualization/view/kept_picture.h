@@ -9,6 +9,9 @@
 
 namespace patina {
 
+// Draws a renderer's bodies as it does without a pass, but for its 2D actors.
+vtkSmartPointer<vtkRenderPass> bodiesPass();
+
 class KeptPicture {
  public:
   // The renderer must fill its window, which must have one sample per pixel.
@@ -18,7 +21,7 @@ class KeptPicture {
   KeptPicture& operator=(const KeptPicture&) = delete;
 
   void keepNext(); // copies the picture at the end of the renderer's next render
-  void drop();     // the bodies have changed
+  void drop();     // to be called when the bodies have changed
   bool has() const;
   // Render pass that draws the copy, for vtkRenderer::SetPass().
   vtkRenderPass& pass() const;
@@ -29,7 +32,7 @@ class KeptPicture {
   vtkRenderer& renderer_;
   vtkSmartPointer<Pass> pass_;
   unsigned long observer_ = 0;
-  bool wanted_ = false, has_ = false;
+  bool wanted_ = false;
 };
 
 } // namespace patina

@@ -1,20 +1,15 @@
 #include "visualization/view/picture_stage.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <vtkBoundingBox.h>
-#include <vtkCameraPass.h>
-#include <vtkLightsPass.h>
 #include <vtkObjectFactory.h>
-#include <vtkOpaquePass.h>
 #include <vtkOpenGLFramebufferObject.h>
 #include <vtkOpenGLRenderWindow.h>
 #include <vtkOpenGLState.h>
 #include <vtkOverlayPass.h>
-#include <vtkRenderPassCollection.h>
 #include <vtkRenderState.h>
-#include <vtkSequencePass.h>
-#include <vtkTranslucentPass.h>
 
 #include "visualization/values/scene_setup.h"
 
@@ -70,21 +65,29 @@ class HalfSizePass : public vtkRenderPass {
   }
 
  protected:
-  HalfSizePass() {
-    const vtkNew<vtkRenderPassCollection> passes;
-    passes->AddItem(vtkNew<vtkLightsPass>());
-    passes->AddItem(vtkNew<vtkOpaquePass>());
-    passes->AddItem(vtkNew<vtkTranslucentPass>());
-    const vtkNew<vtkSequencePass> sequence;
-    sequence->SetPasses(passes);
-    bodies_->SetDelegatePass(sequence);
-  }
+  HalfSizePass() = default;
 
  private:
-  vtkNew<vtkCameraPass> bodies_;
+  vtkSmartPointer<vtkRenderPass> bodies_ = bodiesPass();
   vtkNew<vtkOverlayPass> texts_;
   vtkNew<vtkOpenGLFramebufferObject> half_;
 };
+
+// Least and largest depth of what a renderer shows; {inf, -inf} if it shows nothing.
+std::array<double, 2> depthsOf(vtkRenderer& renderer, vtkCamera& camera) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  std::array<double, 2> depths{kInfinite, -kInfinite};
+  const vtkBoundingBox box(renderer.ComputeVisiblePropBounds());
+  if (!box.IsValid()) return depths;
+  const Vec3 eye(camera.GetPosition()), along(camera.GetDirectionOfProjection());
+  for (int i = 0; i < 8; ++i) {
+    Vec3 corner;
+    box.GetCorner(i, corner.data());
+    const double depth = (corner - eye).dot(along);
+    depths = {std::min(depths[0], depth), std::max(depths[1], depth)};
+  }
+  return depths;
+}
 
 } // namespace
 
@@ -122,7 +125,7 @@ void PictureStage::setGround(const palette::BackgroundStyle& style) {
 void PictureStage::setHalfSize(bool on) {
   if (on && !half_size_) half_size_ = vtkSmartPointer<HalfSizePass>::New();
   is_half_size_ = on;
-  scene->SetPass(on ? half_size_.Get() : nullptr);
+  choosePass();
 }
 
 // The last of both that draws anything smooths what the other has drawn, too.
@@ -132,7 +135,11 @@ void PictureStage::setSmooth(bool on) {
   if (scene->GetUseFXAA() == of_bodies) return;
   scene->SetUseFXAA(of_bodies);
   kept_.drop();
-  if (!is_half_size_) scene->SetPass(nullptr);
+  choosePass();
+}
+
+void PictureStage::choosePass() {
+  scene->SetPass(kept_.has() ? &kept_.pass() : is_half_size_ ? half_size_.Get() : nullptr);
 }
 
 std::array<int, 2> PictureStage::size() const {
@@ -164,20 +171,13 @@ void PictureStage::setRange() {
   std::array<double, 6> bounds{};
   all.GetBounds(bounds.data());
   scene->ResetCameraClippingRange(bounds.data());
+  fitted_ = depthsOf(*foreground, camera());
 }
 
 bool PictureStage::frontIsInRange() const {
-  const vtkBoundingBox box(foreground->ComputeVisiblePropBounds());
-  if (!box.IsValid()) return true;
-  const Vec3 eye(camera().GetPosition()), along(camera().GetDirectionOfProjection());
+  const auto [low, high] = depthsOf(*foreground, camera());
   const double* range = camera().GetClippingRange();
-  for (int i = 0; i < 8; ++i) {
-    Vec3 corner_of_box;
-    box.GetCorner(i, corner_of_box.data());
-    const double depth = (corner_of_box - eye).dot(along);
-    if (depth < range[0] || depth > range[1]) return false;
-  }
-  return true;
+  return low >= std::min(range[0], fitted_[0]) && high <= std::max(range[1], fitted_[1]);
 }
 
 bool PictureStage::finishFrame() {
@@ -191,9 +191,7 @@ bool PictureStage::finishFrame() {
   } else if (front_dirty && !kept_.has() && window != nullptr && window->GetMultiSamples() == 0) {
     kept_.keepNext();
   }
-  scene->SetPass(is_half_size_ && !kept_.has() ? half_size_.Get()
-                 : kept_.has()                 ? &kept_.pass()
-                                               : nullptr);
+  choosePass();
   drawn_from_ = place;
   drawn_size_ = size();
   dirty = front_dirty = false;

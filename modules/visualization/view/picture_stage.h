@@ -23,7 +23,7 @@ struct PictureStage {
   vtkSmartPointer<vtkAxesActor> axes;
   palette::BackgroundStyle ground = palette::kLight;
   bool dirty = true;       // the bodies have changed since the last finishFrame()
-  bool front_dirty = true; // only what other renderers draw has
+  bool front_dirty = true; // what the other renderers draw has changed
 
   PictureStage();
   void setUp(); // call once, when the scene has its actors
@@ -48,11 +48,13 @@ struct PictureStage {
   bool keepsBodies() const { return kept_.has(); } // the next render does not draw them
 
  private:
-  bool frontIsInRange() const; // the camera's range of depth holds it
+  bool frontIsInRange() const; // the camera's range of depth holds it, as far as it can
   void setRange();
+  void choosePass();
 
   vtkSmartPointer<vtkRenderPass> half_size_;
   bool is_half_size_ = false;
+  std::array<double, 2> fitted_{}; // depths of the foreground that the range was set for [m]
   KeptPicture kept_{*scene};
   CameraState drawn_from_{};
   std::array<int, 2> drawn_size_{};

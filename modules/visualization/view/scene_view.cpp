@@ -42,7 +42,7 @@ struct SceneView::Impl : PictureStage {
   vtkNew<vtkOutlineSource> outline;
   vtkSmartPointer<vtkActor> extent_actor = outlineActor(*outline);
   SliceLayer slice{*scene, *overlay};
-  BandLayer band_layer{*scene, *overlay};
+  BandLayer band_layer{*foreground, *overlay}; // its shell is translucent: after the tool
   StabilityLayer stability{*scene, *overlay};
   ToolLayer tool{*foreground, *overlay};
   NodeLayer nodes{*overlay};
