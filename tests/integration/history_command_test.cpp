@@ -237,7 +237,8 @@ TEST_F(History, RefusesWrongHashesAndOutsidePathsWithoutChanges) {
   expectOneLineError(run({"info", workspace}), {"SHA-256"});
   // The history does not need the painted files: they are painted again.
   const Outcome recovered = run({"scene", "-o", folder / "whole", "--recover", workspace});
-  EXPECT_EQ(recovered.exit, 0) << recovered.err;
+  EXPECT_EQ(recovered.exit, 1) << "files were damaged: " << recovered.err;
+  EXPECT_EQ(recovered.err.find("left out"), std::string::npos) << recovered.err;
 }
 
 // A list shows the edits; it does not need pictures and meshes, readable or not.

@@ -336,7 +336,7 @@ WorkspaceStorage::Opened opened(const std::filesystem::path& folder, bool own, b
 struct SceneResult {
   Scene scene;
   bool saved = true; // this command wrote it
-  bool whole = true; // nothing of a damaged workspace was lost
+  bool whole = true; // no file of a workspace was found damaged
 };
 
 // Computes the new scene before the journal is touched, so that a rejected change leaves no trace.
@@ -453,7 +453,7 @@ Command sceneCommand() {
           "names the step.\n"
           "--recover reads the intact parts of a damaged workspace, reports what is lost, and "
           "writes the rest to the output, which may be the damaged folder itself only if it is "
-          "named; it exits with 1 if anything is lost.",
+          "named; it exits with 1 if anything was damaged.",
       .examples = {"patina scene -o cup --add cup.ply --unit cm --set stiffness=800",
                    "patina scene -o cup --add spoon.ply@spoon.txt --move cup@aside.txt",
                    "patina scene -o cup --set friction.static=0.5 --set friction.dynamic=0.3",
