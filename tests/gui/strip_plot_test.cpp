@@ -46,7 +46,7 @@ TEST_F(StripPlotTest, HeldPlotStandsStillWhileTicksAreRecorded) {
         return picture() != runs;
       },
       20000));
-  type('r');
+  type('r', kControl);
   ASSERT_TRUE(waitUntil([&] { return feel().recording(); }, 3000));
   click(holds());
   pointAt(inView({0, 0}));
