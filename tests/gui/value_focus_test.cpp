@@ -66,6 +66,7 @@ TEST_F(ValueFields, WheelScrollsThePanelAndChangesNoValue) {
   tried(stiffness(), [this] { return stiffness()->value(); });
   tried(slider, [=] { return slider->value(); });
   openTab("show");
+  find<QListWidget>("layers")->setCurrentItem(rowOf("slice"));
   ASSERT_TRUE(waitUntil([&] { return position->isVisible(); }, 5000));
   find<DisplayPanel>()->setStabilityNote(QStringLiteral("one\ntwo\nthree\nfour\nfive"));
   ASSERT_TRUE(waitUntil([&] { return scroll_->verticalScrollBar()->maximum() > 0; }, 5000));
