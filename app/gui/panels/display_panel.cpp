@@ -19,7 +19,7 @@ struct Row {
   const char *thing, *words, *key, *tip;
   bool needs_field = true, shown = false;
 };
-// In the order of the list.
+// The order is that of the list.
 constexpr Row kRows[] = {
     {"mesh", "Mesh", "M", "The triangles of the open scene", false, true},
     {"paint", "Paint", "", "The paint of the objects, of one kind", false, true},

@@ -163,7 +163,7 @@ Periods stickSlipPeriods(const HapticSnapshot& snapshot, const Drag& drag, doubl
                          double about, std::size_t count) {
   constexpr double kBegin = -0.055; // start [m]; the field has room for all periods
   const double period = 1 / rate;
-  // In the hand's frame the spring is at rest, and the step is exact.
+  // The spring is at rest in the hand's frame, so that the step is exact.
   const ZohIntegrator step({drag.mass, 0, drag.spring, 0}, period);
   Motion motion{0, -drag.speed};
   ContactMemory memory = landedAt(snapshot, Vec3(kBegin, 0, -drag.depth), period);

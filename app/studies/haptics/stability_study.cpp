@@ -241,7 +241,7 @@ void addCorners(WorkPrecisionTable& table, bool quick, Progress& progress) {
       }
 }
 
-// On a ball and on an edge the equilibrium is unstable (-K d / (r - d)): friction, or a lateral
+// The equilibrium on a ball and on an edge is unstable (-K d / (r - d)): friction, or a lateral
 // hand stiffness of at least 3 P / (r - d), holds the tip there.
 void addRidges(WorkPrecisionTable& table) {
   constexpr double kStiffness = 1000, kPress = 0.15 * kStiffness * kBall;

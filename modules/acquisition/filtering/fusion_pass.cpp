@@ -128,7 +128,7 @@ std::vector<FusionEvent> fusionEvents(const std::vector<InertialReading>& readin
     events.push_back({reference.at(t), t, -1, static_cast<std::ptrdiff_t>(i), is_segment_start});
   }
   while (next < readings.size()) addReading();
-  // In a gap the camera does not show how abruptly the hand moves: at least as elsewhere on
+  // The camera does not show in a gap how abruptly the hand moves: at least as elsewhere on
   // average.
   double squares = 0, count = 0;
   for (const FusionEvent& event : events) {

@@ -181,7 +181,7 @@ bool hasHeights(const std::vector<TracedSample>& samples) {
                      [](const TracedSample& s) { return s.height && !s.is_stationary; });
 }
 
-// For the fit of the roughness, samples are averaged within the tip's resolution.
+// The fit of the roughness takes samples that are averaged within the tip's resolution.
 constexpr std::size_t kMean = 3;
 constexpr double kTold = 0.2e-3; // resolution of the tip [m]
 

@@ -29,7 +29,7 @@ RawHeights readSdf(std::string_view bytes, const std::string& name);
 RawHeights readGwyddionText(std::string_view bytes, const std::string& name);
 RawHeights readHeightTable(std::string_view bytes, const std::string& name);
 
-// Whether text begins with the comments that Gwyddion writes above a matrix or points.
+// Returns whether text begins with the comments that Gwyddion writes above a matrix or points.
 bool isGwyddionText(std::string_view head);
 
 // The number of points of a matrix. Throws FileError: none, or more than kMaxMeasuredPoints.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMagic = 8; // "aISO-1.0"
 
-// How a number is stored, by the header's DataType; the lowest value of a signed type and of a
+// The header's DataType tells how a number is stored; the lowest value of a signed type and of a
 // float means that the point was not measured.
 struct SdfNumber {
   std::size_t bytes;

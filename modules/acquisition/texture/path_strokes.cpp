@@ -45,7 +45,7 @@ std::vector<PathOnMesh> strokesOf(const std::vector<TimedPoint>& points,
     if (place) strokes.back().arc_length.push_back(place->arc_length);
   }
   if (strokes.back().points.empty()) throw Error("has no height at a time of the path");
-  // Where strokes overlap, the first one gets the faces.
+  // The first of overlapping strokes gets the faces.
   if (!places.empty())
     std::stable_sort(strokes.begin(), strokes.end(), [](const PathOnMesh& a, const PathOnMesh& b) {
       return a.arc_length.back() - a.arc_length.front() >

@@ -191,7 +191,7 @@ std::optional<Lines> linesOf(const GreyFrame& image, const Quad& quad, const Cam
     lines[i].blur = std::max(lines[i].blur, blur);
     lines[i].floor = systematic(lines[i].blur, borders[i]);
   }
-  // If the search range cuts the edge on both sides, a wider one is searched.
+  // A wider range is searched if this one cuts the edge on both sides.
   const double reach = std::min(kBlurs * blur, kFarthestReach);
   if (again && max_reach == kReach && reach > kReach &&
       borders[static_cast<std::size_t>(widest)] > 2 * kReach)

@@ -259,8 +259,8 @@ std::optional<Quad> quadOf(const Contour& contour, const QuadOptions& search) {
 
 std::vector<Quad> findQuads(const GreyFrame& original, const QuadOptions& search) {
   // Thresholds see a range of about six deviations of pure noise, whose spots would all be traced.
-  // If this exceeds the contrast of a marker, the picture is smoothed first.
-  // In deviations; upper limit, so that no marker is lost.
+  // The picture is smoothed first if this exceeds the contrast of a marker.
+  // The unit is the deviation; this is an upper limit, so that no marker is lost.
   constexpr double kSpread = 7, kMaxContrast = 64;
   double noise = pixelNoise(original);
   GreyFrame means;

@@ -123,7 +123,7 @@ std::span<const std::int32_t> VolumeFill::fill(const Vec3& centre, double radius
         visit(neighbours[k]);
         continue;
       }
-      // At a boundary or non-manifold edge: visits the faces around its two vertices.
+      // Faces around both vertices are visited at a boundary or non-manifold edge.
       const Triangle& triangle = surface_->welded->triangles[index(face)];
       visitFan(triangle[k]);
       visitFan(triangle[(k + 1) % 3]);
