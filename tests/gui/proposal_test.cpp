@@ -27,6 +27,18 @@ TEST_F(OneClick, DoesWhatAWarningProposes) {
       << "one step of the history";
 }
 
+TEST_F(OneClick, ChangesNoOtherSceneThanThatOfItsMessage) {
+  if (IsSkipped()) return;
+  ASSERT_TRUE(open(saved(sheet(0.06, 0.06, 20), "sheet.obj")));
+  auto* act = find<QToolButton>("open_saved");
+  ASSERT_TRUE(waitUntil([&] { return act->isVisible(); }, 3000));
+  ASSERT_TRUE(open(saved(icosphere(0.03, 12), "ball.obj")));
+  if (act->isVisible()) act->click();
+  wait(500);
+  EXPECT_EQ(edits().scene()->scene.field.sides, OpenSides::automatic);
+  EXPECT_EQ(edits().status().edits.size(), 0U);
+}
+
 TEST_F(OneClick, SwitchesTheForceOnAgain) {
   if (IsSkipped()) return;
   ASSERT_TRUE(open(saved(icosphere(0.03, 12), "ball.obj")));

@@ -406,8 +406,9 @@ void DocumentController::layPictureDialog(std::size_t object) {
     if (!scene || object >= scene->scene.objects.size()) return;
     const SceneObject& laid_on = scene->scene.objects[object];
     const bool mapped = usualProjection(*laid_on.mesh) == Projection::mapped;
-    const auto lay = [this, path, object](PictureTarget target, Projection projection) {
-      at_.edits.layPicture(path.toStdString(), {object, target, projection},
+    const auto lay = [this, path, name = laid_on.name](PictureTarget target,
+                                                       Projection projection) {
+      at_.edits.layPicture(path.toStdString(), name, {0, target, projection},
                            [this, path](const EditOutcome& outcome) {
                              if (outcome.problem.empty()) return;
                              showProblem(&at_.window, tr("The picture cannot be laid"),

@@ -250,14 +250,17 @@ void EditController::addObjects(const std::vector<SceneObject>& objects, EditThr
       false, std::move(done));
 }
 
-void EditController::layPicture(const std::filesystem::path& file, const PictureEdit& edit,
-                                EditThread::Done done) {
+void EditController::layPicture(const std::filesystem::path& file, const std::string& object,
+                                PictureEdit edit, EditThread::Done done) {
   thread_.apply(
       "lay " + file.filename().string(),
-      [file, edit](const CompiledScene& now) {
+      [file, object, edit](const CompiledScene& now) mutable {
         const Picture picture = readPicture(file);
         auto scene = std::make_shared<Scene>(now.scene);
-        if (edit.object >= scene->objects.size()) throw Error("the object is no longer there");
+        const auto named = std::find_if(scene->objects.begin(), scene->objects.end(),
+                                        [&](const SceneObject& o) { return o.name == object; });
+        if (named == scene->objects.end()) throw Error(object + " is no longer in the scene");
+        edit.object = static_cast<std::size_t>(named - scene->objects.begin());
         std::shared_ptr<const PaintSurface> surface;
         Progress progress;
         patina::layPicture(*scene, now, edit, picture, surface, progress);

@@ -50,7 +50,7 @@ class EditController : public QObject {
   void changeValues(std::function<void(Scene&)> change); // One step of the history.
   void changeColors(const std::string& thing, const ColorScale& scale);
   void addObjects(const std::vector<SceneObject>& objects, EditThread::Done done);
-  void layPicture(const std::filesystem::path& file, const PictureEdit& edit,
+  void layPicture(const std::filesystem::path& file, const std::string& object, PictureEdit edit,
                   EditThread::Done done);
   void setTool(const ToolChoice& choice) {
     paints_relief_ = choice == ToolChoice{InteractionMode::paint, Tool::relief};

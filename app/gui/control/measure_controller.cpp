@@ -93,6 +93,8 @@ void MeasureController::measure(const MeasuredPoint& point) {
 
 // A path over a large mesh takes seconds, so the window goes on meanwhile.
 void MeasureController::finish(std::vector<MeasuredPoint> points) {
+  for (Background* job : findChildren<Background*>())
+    if (job->isIdle()) delete job; // It was stopped, and has ended since.
   auto* job = new Background(this);
   at_.panel.setBusy(++running_ > 0);
   job->start([this, job, points = std::move(points), scene = scene_, kind = at_.panel.kind(),

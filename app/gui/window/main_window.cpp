@@ -155,6 +155,7 @@ void MainWindow::connectFiles() {
   new LoadingMode(
       documents_, desks_, [this] { return isSeen(state()); }, this);
   connect(&documents_, &DocumentController::changed, this, &MainWindow::refresh);
+  connect(&documents_, &DocumentController::loadFinished, this, [this] { ++opened_; });
   connect(&documents_, &DocumentController::previewed, this, &MainWindow::showPreview);
   connect(&documents_, &DocumentController::abandoned, this, &MainWindow::showAgain);
   connect(&documents_, &DocumentController::alreadyOpen, this, &MainWindow::sceneReady);
@@ -279,8 +280,10 @@ WindowState MainWindow::state() const {
 void MainWindow::say(Message message) {
   const auto proposal = message.warns ? proposalOf(message.words) : std::nullopt;
   if (proposal && message.action.words.isEmpty())
-    message.action = {proposal->words,
-                      [this, change = proposal->change] { edits_.changeValues(change); }};
+    message.action = {proposal->words, [this, change = proposal->change, opened = opened_] {
+                        if (opened == opened_) return edits_.changeValues(change);
+                        say({tr("That message was about another scene: nothing is changed")});
+                      }};
   message.words = withoutCommands(message.words);
   parts_.messages->add(message);
   if (!parts_.messages->isVisible()) parts_.notice->show(message);

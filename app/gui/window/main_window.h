@@ -121,6 +121,7 @@ class MainWindow : public QMainWindow {
   bool stages_shown_ = true;
   double felt_ = 0; // Largest force on this surface [N].
   bool closing_ = false;
+  int opened_ = 0; // Scenes that were opened so far.
   int ticks_ = 0;
 };
 

@@ -25,7 +25,7 @@ constexpr double kGyroscopeDelay = 5e-3; // prior deviation [s]
 constexpr double kClearlyDelayed = 4;    // deviations of a significant delay
 constexpr int kRounds = 10;
 constexpr double kMaxRatio = 0.7; // largest ratio of two steps that is extrapolated
-constexpr double kHopeless = 300; // a fit lowers the deviance of its start by less
+constexpr double kHopeless = 300; // no fit lowers the deviance of its start by more
 constexpr double kClearly = 30;   // difference of the deviance of clearly different fits
 
 using Accelerations = Eigen::Vector4d;

@@ -188,6 +188,11 @@ bool ToolLayer::isOutside(const Vec3& p) const {
   return pixel->minCoeff() < kEdge || pixel->x() > size[0] - kEdge || pixel->y() > size[1] - kEdge;
 }
 
+int ToolLayer::distanceBeside() const {
+  const double dpi = overlay_.GetRenderWindow()->GetDPI();
+  return static_cast<int>(std::lround(kBeside * std::max(1.0, dpi / 72)));
+}
+
 // Places the number beyond the arrow's end, inside the picture and off its corner.
 void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newtons) {
   const auto at = inPicture(end);
@@ -199,8 +204,7 @@ void ToolLayer::placeNumber(const Vec3& end, const Vec3& direction, double newto
   if (std::abs(across) > kUpright) leftwards_ = across < 0;
   vtkTextProperty* text = label_->GetTextProperty();
   text->SetJustification(leftwards_ ? VTK_TEXT_RIGHT : VTK_TEXT_LEFT);
-  const double dpi = overlay_.GetRenderWindow()->GetDPI();
-  const int gap = static_cast<int>(std::lround(kBeside * std::max(1.0, dpi / 72)));
+  const int gap = distanceBeside();
   int beside = leftwards_ ? -gap : gap, over = 0;
   std::array<int, 4> box{};
   if (vtkTextRenderer::GetInstance()->GetBoundingBox(text, words, box.data(),
@@ -238,7 +242,7 @@ void ToolLayer::placeGap() {
   char words[32];
   std::snprintf(words, sizeof words, " %.*f mm ", gap < 1e-3 ? 2 : 1, 1e3 * gap);
   gap_label_->SetInput(words);
-  gap_label_->SetPosition(std::round(middle->x() + kBeside), std::round(middle->y()));
+  gap_label_->SetPosition(std::round(middle->x()) + distanceBeside(), std::round(middle->y()));
 }
 
 double ToolLayer::ballRadius() const {

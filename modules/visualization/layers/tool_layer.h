@@ -45,6 +45,7 @@ class ToolLayer {
   // Position in pixels for the overlay's camera; nullopt if there is no picture.
   std::optional<Vec2> inPicture(const Vec3& p) const;
   bool isOutside(const Vec3& p) const;
+  int distanceBeside() const; // a number's, from what it belongs to [pixels]
   void placeGap();
   void placeNumber(const Vec3& end, const Vec3& direction, double newtons);
 

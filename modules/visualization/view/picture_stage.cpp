@@ -132,7 +132,8 @@ void PictureStage::setHalfSize(bool on) {
 void PictureStage::setSmooth(bool on) {
   const bool in_front = foreground->VisibleActorCount() > 0, of_bodies = on && !in_front;
   foreground->SetUseFXAA(on && in_front);
-  if (scene->GetUseFXAA() == of_bodies) return;
+  // A kept picture keeps its edges while something moves before it.
+  if (scene->GetUseFXAA() == of_bodies || (kept_.has() && changed_)) return;
   scene->SetUseFXAA(of_bodies);
   kept_.drop();
   choosePass();
@@ -183,7 +184,7 @@ bool PictureStage::frontIsInRange() const {
 bool PictureStage::finishFrame() {
   const CameraState place = placeOf(camera());
   const bool bodies = dirty || place != drawn_from_ || size() != drawn_size_ || !frontIsInRange();
-  const bool changed = bodies || front_dirty;
+  changed_ = bodies || front_dirty;
   auto* window = scene->GetRenderWindow();
   if (bodies) {
     setRange();
@@ -195,7 +196,7 @@ bool PictureStage::finishFrame() {
   drawn_from_ = place;
   drawn_size_ = size();
   dirty = front_dirty = false;
-  return changed;
+  return changed_;
 }
 
 } // namespace patina

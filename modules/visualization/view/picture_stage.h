@@ -54,6 +54,7 @@ struct PictureStage {
 
   vtkSmartPointer<vtkRenderPass> half_size_;
   bool is_half_size_ = false;
+  bool changed_ = false;           // what finishFrame() has returned last
   std::array<double, 2> fitted_{}; // depths of the foreground that the range was set for [m]
   KeptPicture kept_{*scene};
   CameraState drawn_from_{};
