@@ -22,6 +22,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     markers = patina::parseMarkers(text, "fuzz");
   } catch (const patina::FileError&) {
   }
+  try {
+    patina::parseRigDeviations(text, "fuzz");
+  } catch (const patina::FileError&) {
+  }
   const std::string written = patina::rigText(rig.value_or(patina::Rig()), markers);
   const patina::Rig again = patina::parseRig(written, "written");
   if (rig && (again.accelerometers != rig->accelerometers || again.force_gain != rig->force_gain))

@@ -128,11 +128,10 @@ std::vector<RigMarker> markersIn(const Json& json) {
 RigDeviations deviationsIn(const Json& json) {
   RigDeviations found;
   if (json.find("tip_deviation")) found.tip = vectorIn(json, "tip_deviation").cwiseAbs().maxCoeff();
-  if (const Json* markers = json.find("markers"))
-    for (const Json& marker : markers->asArray())
-      if (const Json* size = marker.find("size_deviation"))
-        found.size = std::max(found.size.value_or(0),
-                              std::abs(size->asNumber()) / marker.at("size").asNumber());
+  if (json.find("markers"))
+    for (const RigMarker& marker : markersIn(json))
+      if (marker.size_deviation > 0)
+        found.size = std::max(found.size.value_or(0), marker.size_deviation / marker.size);
   found.calibrated = found.tip || found.size || json.find("accelerometers") ||
                      json.find("force_zero") || json.find("force_gain");
   return found;
