@@ -21,7 +21,7 @@ namespace {
 
 // Explains a poor registration of a valid scan and mesh: wrong unit, wrong size or a mirrored mesh.
 
-constexpr double kDeviations = 4, kMinScale = 5e-3;
+constexpr double kDeviations = 3.5, kMinScale = 5e-3;
 constexpr double kClearlyBetter = 0.8;             // ratio of the rms
 constexpr double kOutlier = 5;                     // times the rms
 constexpr std::size_t kMaxTried = 400;             // points
@@ -77,7 +77,8 @@ double cappedRms(const std::vector<SurfaceResidual>& residuals, double most) {
 }
 
 // A fit may count few samples, the best ones, so that all are compared.
-bool isClearlyBetter(const Registration& there, const std::vector<SurfaceResidual>& here) {
+template <class Fit>
+bool isClearlyBetter(const Fit& there, const std::vector<SurfaceResidual>& here) {
   const double most = kOutlier * there.rms;
   return there.converged &&
          cappedRms(there.residuals, most) < kClearlyBetter * cappedRms(here, most);
@@ -91,11 +92,25 @@ std::vector<Vec3> scaledBy(const std::vector<Vec3>& points, double scale) {
   return scaled;
 }
 
+// Fits pose and scale from the inliers of `found` and from all samples: another size may have left
+// few inliers, and outliers may mislead all. Returns the better fit.
+SimilarityFit sizedFit(const SurfaceTarget& target, const std::vector<Vec3>& points,
+                       const Registration& found, const std::vector<double>& indentations,
+                       double noise) {
+  const auto from = [&](const std::vector<bool>& inliers) {
+    return fitSimilarity(target, points, found.mesh_from_path, inliers, indentations,
+                         minNoise(points, noise));
+  };
+  SimilarityFit some = from(found.inliers), all = from(std::vector<bool>(points.size(), true));
+  if (!some.converged || !all.converged) return some.converged ? some : all;
+  const double most = kOutlier * std::min(some.rms, all.rms);
+  return cappedRms(all.residuals, most) < cappedRms(some.residuals, most) ? all : some;
+}
+
 // Returns lines for the user, none if all is well. If the path was registered (`found`), the scale
-// is tested: a line is given if it differs from one by more than four deviations and half a
-// percent, unless a motion is unobservable, because a scale would imitate it. Otherwise other units
-// are tried, and for an ambiguous or failed registration a mirror image, with at most 400 points.
-// `fitting`: the options of `found`.
+// is tested: a line is given if it differs from one by more than 3.5 deviations and half a
+// percent. Otherwise other units are tried, and for an ambiguous or failed registration a mirror
+// image, with at most 400 points. `fitting`: the options of `found`.
 std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vector<Vec3>& points,
                                     const RegistrationOptions& fitting, const Registration& found,
                                     Progress& progress) {
@@ -103,12 +118,11 @@ std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vect
   std::vector<double> pressed = fitting.indentations;
   if (!fitting.force.empty())
     pressed = ScanForces(fitting.force, fitting.scan).indentations(found.compliances);
-  const SimilarityFit sized = fitSimilarity(target, points, found.mesh_from_path, found.inliers,
-                                            pressed, minNoise(points, fitting.noise));
+  const SimilarityFit sized = sizedFit(target, points, found, pressed, fitting.noise);
   const double off = sized.scale - 1;
-  const bool says = found.free.empty() && sized.converged && std::abs(off) < kOneSize &&
-                    std::abs(off) > kMinScale && std::abs(off) > kDeviations * sized.deviation &&
-                    (found.converged || sized.rms < kClearlyBetter * found.rms);
+  const bool says = sized.converged && std::abs(off) < kOneSize && std::abs(off) > kMinScale &&
+                    std::abs(off) > kDeviations * sized.deviation &&
+                    (found.converged || isClearlyBetter(sized, found.residuals));
   const auto sayScale = [&] {
     doubts.push_back("the mesh looks " + percent(off / sized.scale) +
                      (off < 0 ? " too small" : " too large") + " (one deviation " +

@@ -17,7 +17,7 @@ struct DeviceModel {
 
 // Stabilisers in the servo's force path (F13; Adams & Hannaford 1999; Hannaford & Ryu 2002).
 struct Stabilisers {
-  bool coupling = false;  // virtual coupling, damped along the VCP-tip vector
+  bool coupling = false;  // virtual coupling, damped along the vector from contact point to tip
   bool passivity = false; // passivity controller on the generated energy, as a watchdog
   bool operator==(const Stabilisers&) const = default;
 };

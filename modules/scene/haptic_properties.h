@@ -9,8 +9,8 @@ struct Friction {
   double static_coefficient = 0;  // mu_s >= mu_d
   double dynamic_coefficient = 0; // mu_d >= 0
   double depth_gain = 0;          // gamma of K10 (ii): mu (1 + gamma d / d_ref), d_ref = 1 mm
-  // K09 moves the VCP towards the tip's candidate; `displacement` opposes the motion in the tangent
-  // plane, which is closer to Coulomb's law on a curved path (docs/papers.md).
+  // K09 moves the contact point towards the tip's candidate; `displacement` opposes the motion in
+  // the tangent plane, which is closer to Coulomb's law on a curved path (docs/papers.md).
   enum class SlipDirection { paper, displacement } slip = SlipDirection::paper;
   bool operator==(const Friction&) const = default;
 };

@@ -31,12 +31,12 @@ struct StoredSceneEdit {
 struct JournalEvent : std::variant<Stroke, ValueEdit, StoredSceneEdit, UndoEvent, RedoEvent> {
   using variant::variant;
   std::int64_t time = 0; // seconds since 1970 UTC; 0 = unknown, as in an older journal
-  std::string intent;    // the caller's name of the command that made it; may be empty
+  std::string intent;    // --intent of the command that made it; may be empty
 };
 
 struct JournalText {
   std::string from;                 // state file before the first record; "" without a header
-  std::string intent;               // the id that the making command was given; may be empty
+  std::string intent;               // --intent of the command that made the file; may be empty
   std::vector<JournalEvent> events; // complete records up to the first fault
   // Fault after them: an incomplete record from a crash (torn), or damaged records or records out
   // of order (line and cause).
@@ -46,7 +46,7 @@ struct JournalText {
 };
 // A record has a number (from 1) and a checksum. Memory is bounded; invalid text does not throw.
 JournalText parseJournal(std::string_view text);
-// Both with '\n'. `more`: the record counts only together with the next one.
+// Both functions return a line with its '\n'. `more`: the record counts only with the next one.
 std::string journalHeader(const std::string& from, const std::string& intent = {});
 std::string journalLine(std::uint64_t number, const JournalEvent& event, bool more = false);
 
@@ -57,7 +57,7 @@ class JournalWriter {
  public:
   // The file must exist (saveWorkspace makes it). Truncates it after the first `events` records;
   // damaged records are first copied to NAME.damaged. Throws FileError if another program holds the
-  // lock, or the file has fewer records, or a complete one more, which another program then wrote.
+  // lock, if the file has fewer records, or if it has more because another program wrote to it.
   JournalWriter(const std::filesystem::path& path, std::uint64_t events);
   ~JournalWriter();
   // Adds the present time to events that have none. Throws Error for a stroke that could not be

@@ -78,7 +78,7 @@ JointScan jointScanOf(unsigned seed) {
   return scan;
 }
 
-// Fits the pose alone, with the given tip and clock.
+// Fits the pose alone and leaves the errors of tip and clock in the path.
 Pose separately(const SurfaceTarget& target, const std::vector<PathSample>& path, const Pose& start,
                 double compliance) {
   std::vector<Vec3> points;

@@ -184,7 +184,7 @@ TEST(SmoothedRelief, KeepsConstantsAndUnusedTexels) {
   const TexelMap texels = texelMap(*layout.uvs, kSize, kSize);
   const auto image = reliefImage(kSize, [&](double u, double v) {
     const int i = static_cast<int>(u * kSize), j = static_cast<int>(v * kSize);
-    return texels.ownerAt(i, j) >= 0 ? 0.7 : -3.0; // not read across a chart's edge
+    return texels.ownerAt(i, j) >= 0 ? 0.7 : -3.0; // the smoother must not read these texels
   });
   const TiledImage after = smoother(ball, layout.uvs, kSize, 3e-3).smoothed(*image);
   for (int j = 0; j < kSize; ++j)

@@ -221,7 +221,7 @@ TEST(VolumeFill, SegmentFromTheTipPicksTheFaceItCrosses) {
     const Vec3 out = Vec3(normal(random), normal(random), normal(random)).normalized();
     const Vec3 tilted = 1e-3 * Vec3(normal(random), normal(random), normal(random)).cross(out);
     const Vec3 tip = 0.047 * out + tilted;
-    // The VCP of a field lies slightly off the faces, on either side.
+    // The contact point of a field lies slightly off the faces, on either side.
     const Vec3 vcp = 0.0499 * out + 2e-4 * normal(random) * out;
     int hit = -1;
     double at = 0;
@@ -234,7 +234,7 @@ TEST(VolumeFill, SegmentFromTheTipPicksTheFaceItCrosses) {
       const bool inside = (b - a).cross(p - a).dot(across) >= 0 &&
                           (c - b).cross(p - b).dot(across) >= 0 &&
                           (a - c).cross(p - c).dot(across) >= 0;
-      // Faces at the sphere's far side are no part of the VCP's cell.
+      // Faces at the sphere's far side are no part of the contact point's cell.
       if (inside && t >= 0 && (p - vcp).norm() < 3e-3) hit = static_cast<int>(f), at = t;
     }
     ASSERT_GE(hit, 0) << n;

@@ -70,8 +70,8 @@ double distanceTo(const std::vector<std::pair<Vec3, Vec3>>& rim, const Vec3& p) 
   return least;
 }
 
-// The tip goes 3 mm into a random point, 10 mm along it and up again; from behind with side = -1.
-// Returns nothing near the boundary.
+// Returns tips that start 3 mm above a random face, go kBelow under the surface, slide 10 mm along
+// it and come up; side = -1 begins behind the face. Empty near the boundary.
 std::vector<Vec3> touch(const OpenSurface& surface, const ExactSurface& body,
                         const std::vector<std::pair<Vec3, Vec3>>& rim, double iso, double side,
                         std::mt19937& random) {

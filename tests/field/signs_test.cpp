@@ -175,7 +175,8 @@ TEST(Signs, NoneWrongWithFlippedFaces) {
   }
 }
 
-// No edge shows which of these faces is wrong: the inside is lost, but it is reported.
+// Shrunken faces share no edge that shows which are flipped: the inside cannot be told, and the
+// nodes count as ambiguous.
 TEST(Signs, LooseFacesThatFaceAnywhereAreCounted) {
   const TriangleMesh loose = withShrunkenTriangles(ballMesh(), 0.002);
   EXPECT_EQ(wrongSigns(loose, ballTruth).points, 0);

@@ -140,7 +140,8 @@ TEST(TextureLayer, OnlyTheConservativeFormDoesNoWorkRoundALoop) {
               0, 0.01 * due);
 }
 
-// The texture as the surface's own shape: K (d + h) along its normal, and no work round a loop.
+// A relief texture deforms the surface: at depth d below it the force is K d along its normal, and
+// a loop does no work.
 TEST(TextureRelief, ChangesTheShapeOfTheSurface) {
   const TexturedSlab plate(waves(8e-3, {0.2e-3, 0, 0.02e-3}), 0.015);
   const auto snapshot = plate.compiled(sceneOf(500));

@@ -206,7 +206,7 @@ TEST(Friction, GrowsWithDepth) {
   EXPECT_NEAR(deep, 3 * shallow, 1e-6);
 }
 
-// On a curved surface the dragged VCP stays on it, at exactly mu_d d from the candidate.
+// On a curved surface the dragged contact point stays on it, at exactly mu_d d from the candidate.
 TEST(Friction, DraggedVcpStaysOnTheSurface) {
   const Field sphere = sphereField();
   const FieldSampler surface(*sphere, Sampler::high);
@@ -245,7 +245,7 @@ TEST(Friction, CreepingSlipOnACurveDoesNotChatter) {
   }
 }
 
-// MATH 2.6: sign(v) friction chatters about zero velocity; the clamped VCP comes to rest.
+// MATH 2.6: sign(v) friction chatters about zero velocity; the clamped contact point comes to rest.
 TEST(Friction, MassComesToRestWithoutChatter) {
   const auto snapshot = compileStages(withFriction(sceneOf(500), 0.5, 0.5), planeField());
   SimulatedDeviceSpec spec;

@@ -172,7 +172,7 @@ TEST(LinkedDevice, IsDisconnectedWithACauseUntilConnected) {
   EXPECT_EQ(inhibitText(*wire.spec.notes), "no force: the emulated Falcon is not attached");
 }
 
-// A link that blocks its caller longer and longer.
+// A link whose exchange() blocks its caller for `wait` milliseconds.
 class SlowLink final : public DeviceLink {
  public:
   Opening open() noexcept override { return {true, {}}; }

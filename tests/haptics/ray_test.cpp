@@ -35,7 +35,7 @@ TEST(Ray, VcpOnAPlaneIsExact) {
   }
 }
 
-// T-K06b: order 2 of the VCP on a sphere, 1 to 4 mm deep, with the paper's sampler.
+// T-K06b: order 2 of the contact point on a sphere, 1 to 4 mm deep, with the paper's sampler.
 TEST(Ray, VcpOnASphereConvergesWithOrderTwo) {
   std::vector<double> voxels, errors;
   for (const int cells : {48, 72, 104, 150, 200}) {

@@ -109,7 +109,7 @@ TEST(PulledRelief, ForceEqualsTheTexturedSurfaces) {
       EXPECT_NEAR(lean, form == ForceForm::literal ? 0 : std::atan(a), 1e-5);
       EXPECT_NEAR(contact.force.z(), 500 * d, 1e-5);
       EXPECT_NEAR(contact.force.y(), 0, 1e-6);
-      // The VCP bears the spring's force; the surface point is the unraised one.
+      // The contact point bears the spring's force; the surface point is the unraised one.
       EXPECT_LT((500 * (contact.vcp - contact.tip) - contact.force).norm(), 1e-12);
       EXPECT_LT((contact.surface - Vec3(x, 0.7e-3, 0)).norm(), 1e-6);
     }

@@ -102,7 +102,8 @@ double growthFrom(const Scene& scene, const Field& field, const Vec3& rest, cons
   const ZohStep step = zohStep({device.mass, device.damping, 0, 0}, period);
   ContactMemory memory;
   Vec3 press = Vec3::Zero();
-  for (int i = 0; i < 20; ++i) press = -tick(*snapshot, memory, rest, period).force; // settled
+  // twenty ticks settle the contact
+  for (int i = 0; i < 20; ++i) press = -tick(*snapshot, memory, rest, period).force;
   Vec3 x = rest, v = nudge;
   double early = 0, late = 0;
   const int second = static_cast<int>(std::lround(device.rate));

@@ -5,9 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include "acquisition/registration/joint_fit.h"
 #include "acquisition/registration_shapes.h"
 #include "core/decompose.h"
 #include "core/error.h"
+#include "geometry/mesh/shapes.h"
 #include "support/longer.h"
 
 namespace patina {
@@ -204,6 +206,40 @@ TEST(ScanDoubts, NameAWrongUnitAMirrorAndAWrongSize) {
     EXPECT_NE(doubtOf(1.02, false).find("% too large"), std::string::npos);
     EXPECT_EQ(doubtOf(1, false), "");
   }
+}
+
+std::vector<Vec3> positionsOf(const Drawn& drawn) {
+  std::vector<Vec3> points;
+  for (const PathSample& sample : drawn.paths.front()) points.push_back(sample.position);
+  return points;
+}
+
+// A fit without scale may keep only the samples that another size left on the surface.
+TEST(ScanDoubts, FindTheSizeFromTheFewSamplesOnTheSurface) {
+  const TriangleMesh body = test::lumpy();
+  const SurfaceTarget target(body, 0, true);
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const std::vector<Vec3> points = positionsOf(onAnotherSize(body, 0.98, false, seed));
+    std::vector<bool> near;
+    for (const Vec3& p : points) near.push_back(std::abs(target.residual(p).distance) < kNoise);
+    EXPECT_LT(std::count(near.begin(), near.end(), true), 0.4 * static_cast<double>(near.size()));
+    const SimilarityFit fit = fitSimilarity(target, points, Pose::Identity(), near, {}, kNoise);
+    EXPECT_TRUE(fit.converged) << seed;
+    EXPECT_NEAR(fit.scale, 0.98, 4 * fit.deviation) << seed;
+    EXPECT_LT(fit.deviation, 2e-3) << seed;
+    EXPECT_LT(fit.rms, 1.3 * kNoise) << seed;
+  }
+}
+
+TEST(ScanDoubts, NoSizeIsKnownFromAPlane) {
+  const SurfaceTarget target(sheet(0.1, 0.1, 1), 0, true);
+  Draw draw(1);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 200; ++i)
+    points.emplace_back(draw.uniform(-0.02, 0.02), draw.uniform(-0.02, 0.02), 0);
+  const std::vector<bool> all(points.size(), true);
+  EXPECT_TRUE(
+      std::isinf(fitSimilarity(target, points, Pose::Identity(), all, {}, kNoise).deviation));
 }
 
 TEST(RegisterScans, WarningsNameTheirScan) {

@@ -47,7 +47,8 @@ TEST(MaterialSamples, ReproduceAnAffineFieldToRounding) {
   }
 }
 
-// One look-up against the map's own, over blocks, borders and nodes, with a second channel.
+// The samples agree with MaterialMap::at() in blocks, at their borders and at nodes, for two
+// channels.
 TEST(MaterialSamples, AgreeWithTheMapEverywhere) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> value(0, 900), weight(0, 1);

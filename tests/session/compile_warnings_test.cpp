@@ -56,7 +56,7 @@ Scene bar(double thickness, double turn) {
   return scene;
 }
 
-// Counts the presses, of 40, that end with less than half of the force.
+// Counts the presses, of 40, that end with less than half of stiffness times depth.
 int letGo(const Scene& scene, double thickness, double turn) {
   Progress progress;
   const auto compiled = compile(scene, progress);

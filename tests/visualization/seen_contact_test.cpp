@@ -28,7 +28,7 @@ TEST(SeenContact, IsOnTheOriginalSurfaceForEveryOffset) {
 
 TEST(SeenContact, LagsByFrictionLikeTheContactPoint) {
   ToolSample sample = pressed(2e-3, 1e-3);
-  const Vec3 back(-0.4e-3, 0.3e-3, 0); // shift of the VCP along the surface
+  const Vec3 back(-0.4e-3, 0.3e-3, 0); // shift of the contact point along the surface
   sample.vcp += back;
   EXPECT_LT((seenContact(sample) - (sample.surface + back)).norm(), 1e-15);
 }

@@ -94,7 +94,7 @@ std::string firmwareText(std::uint16_t release) {
          std::to_string(release >> 4 & 15) + std::to_string(release & 15);
 }
 
-// Adds the identification of a probe; a device without access is reported elsewhere.
+// Adds what a probe says about itself; its caller passes only devices that can be opened.
 void addDescription(const UsbDevice& device, Json& entry, std::string& text) {
   try {
     const ProbeDescription probe = describeProbe(*openUsb(device), device.name);

@@ -115,7 +115,8 @@ void Alignment::begin() {
   moved_ = false;
   path_ = whole_;
   makeTarget();
-  std::vector<std::string> default_sigmas; // Unused here: the registration reports it.
+  // The registration reports these warnings, so they are dropped here.
+  std::vector<std::string> default_sigmas;
   if (target_) path_ = touchingOn(target_->mesh(), std::move(path_), default_sigmas);
   std::vector<Vec3> all;
   for (const PathSample& sample : path_) all.push_back(sample.position);
@@ -137,8 +138,8 @@ Vec3 Alignment::centroid() const {
 }
 
 const std::optional<Registration>& Alignment::found() const {
-  static const std::optional<Registration> kNobody;
-  return steps_.empty() || moved_ ? kNobody : steps_[at_].fit;
+  static const std::optional<Registration> kNoFit;
+  return steps_.empty() || moved_ ? kNoFit : steps_[at_].fit;
 }
 
 void Alignment::commit(std::optional<Registration> fit) {

@@ -246,7 +246,7 @@ void RecentFiles::rebuild() {
   menu_.setEnabled(!menu_.isEmpty());
 }
 
-// Accepts files that are dropped on a widget, which owns it.
+// Accepts files that are dropped on a widget; the widget owns this object.
 class FileDrop : public QObject {
   Q_OBJECT
  public:

@@ -15,15 +15,15 @@
 namespace patina {
 namespace {
 
-// Time for which a released stroke waits for the tip; ticks, in case the servo is starved.
+// A released stroke waits this long for the tip: in time, and in ticks if the servo is starved.
 constexpr int kGracePeriod = 250; // [ms]
 constexpr std::size_t kGraceTicks = 250;
-// The wait ends then, because a tip that does not follow the pointer never arrives.
+// The wait ends after this time, because a tip may never reach the pointer.
 constexpr int kMaxGracePeriod = 5000; // [ms]
 // Limits how fast a press deepens on softer surface.
 constexpr double kSinking = 0.05;      // [m/s]
 constexpr double kMaxPressStep = 0.03; // Longest time step of a press, also after a pause [s].
-// A tick further than this from the chord becomes a sample [brush radii].
+// A tick farther than this from the chord of two samples becomes a sample [brush radii].
 constexpr double kOff = 0.003;
 
 } // namespace

@@ -60,7 +60,7 @@ void PaintDisplay::decide() {
     now = available_[static_cast<std::size_t>(index - kFirst)];
   } else if (on_ && !available_.empty()) {
     now = quantityOf(tool_);
-    // A new kind of paint is shown at once; otherwise the display does not change.
+    // The display keeps what it shows, or takes the first kind, if there is no paint of the tool's.
     if (!now || !has(*now)) now = shown_ && has(*shown_) ? *shown_ : available_.front();
   }
   if (now == shown_) return;

@@ -32,7 +32,7 @@ class RecordPanel : public QGroupBox {
   void suggestCalibration(const QString& folder) { // Used if none is chosen.
     if (calibration_->text().isEmpty()) calibration_->setText(folder);
   }
-  void choose(const RecordingChoice& choice); // Keeps the probe if there is none in it.
+  void choose(const RecordingChoice& choice); // Keeps the chosen probe if `choice` has none.
   void setState(const RecordingState* state); // nullptr: no recording.
 
  signals:
@@ -70,7 +70,8 @@ class ScanRecording : public QObject {
   void noted(const QString& line); // A note about its frames, before ended().
 
  private:
-  std::shared_ptr<Recorder> recorder_; // The thread that ends it may own it last.
+  // The job that stops the recorder may hold its last reference.
+  std::shared_ptr<Recorder> recorder_;
   std::filesystem::path folder_;
   Background job_;
   bool ends_ = false; // The job completes a recording.

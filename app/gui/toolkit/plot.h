@@ -117,7 +117,8 @@ class PlotWidget : public QWidget {
   void paintMarks(QPainter& painter, const QRectF& area, const Frame& frame) const;
 
   PlotContent content_;
-  std::map<std::size_t, AxisSpan> chosen_; // One for each axes; stacked ones share it.
+  // Zoomed part of x by the index of its axes; stacked axes share index 0.
+  std::map<std::size_t, AxisSpan> chosen_;
   std::optional<std::size_t> dragged_;
   std::optional<QPointF> pointer_;
   double last_ = 0; // Last position of a drag [px].

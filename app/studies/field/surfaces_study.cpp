@@ -187,7 +187,8 @@ double seconds(const std::chrono::steady_clock::time_point& since) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
 }
 
-// K14, F9: two balls of 20 mm at +-10 mm. The VCP's distance against the depth in the union.
+// K14, F9: two balls of 20 mm at +-10 mm. The contact point's distance against the depth in the
+// union.
 WorkPrecisionTable overlap(const std::vector<int>& resolutions, int tips, Progress& progress) {
   constexpr double kBall = 0.02, kApart = 0.01;
   WorkPrecisionTable table =

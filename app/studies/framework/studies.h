@@ -18,7 +18,7 @@ std::vector<WorkPrecisionTable> fieldStudy(const StudyOptions& options, Progress
 
 // Contact step, proxy and ray, on the fixed test (contact_test_path.h): force against its closed
 // form, and nanoseconds per tick, by surface, sampler, tip and friction; cracks; scale; order of
-// the VCP (T-K06b). Finally shapes with several normals.
+// the contact point (T-K06b). Finally shapes with several normals.
 std::vector<WorkPrecisionTable> contactStudy(const StudyOptions& options, Progress& progress);
 
 // Friction in time: dissipation of a stroke back and forth, stick-slip, and direction of friction,

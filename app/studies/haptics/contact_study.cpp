@@ -137,7 +137,7 @@ WorkPrecisionTable contactOnShapes(const StudyOptions& options, Progress& progre
                                       contactSnapshot(field, iso, "ray")};
         std::array<CheckedMethod, 2> checked;
         std::array<TickTimes, 2> times;
-        Way way; // tips of the proxy, used for both
+        Way way; // the proxy trial's tips, on which both methods are timed
         for (std::size_t m = 0; m < 2; ++m) {
           const ContactMethod method = methodOf(*snapshots[m]);
           checked[m].trials =
@@ -290,7 +290,7 @@ WorkPrecisionTable scales(int repeats) {
   return table;
 }
 
-// T-K06b: tips 1 to 4 mm deep in a sphere of radius 30 mm; VCP and nearest surface point.
+// T-K06b: tips 1 to 4 mm deep in a sphere of radius 30 mm; contact point and nearest surface point.
 constexpr double kBall = 0.03;    // radius [m]
 constexpr double kDeepest = 4e-3; // [m]
 
@@ -331,7 +331,7 @@ WorkPrecisionRow vcpRow(const std::shared_ptr<const SurfaceField>& field, Sample
 
 WorkPrecisionTable vcpOrder(const std::vector<int>& resolutions, Progress& progress) {
   WorkPrecisionTable table =
-      tableOf("VCP on a sphere (T-K06b), rms and max; order 2 with kim and ray", "m");
+      tableOf("contact point on a sphere (T-K06b), rms and max; order 2 with kim and ray", "m");
   OrderFit order;
   for (const int resolution : resolutions) {
     progress.throwIfCancelled();

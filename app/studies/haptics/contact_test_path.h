@@ -13,7 +13,8 @@ namespace patina {
 inline constexpr double kContactTestPeriod = 1e-3; // [s]
 inline constexpr int kContactTestTicks = 20000;
 inline constexpr int kContactTestLeadIn = 300;
-// Ticks ignored in errors with friction: the VCP sticks until it has been dragged by mu_s d.
+// Ticks ignored in errors with friction: the contact point sticks until it has been dragged by mu_s
+// d.
 inline constexpr int kContactTestSettle = 100;
 
 struct ContactTestSpec {

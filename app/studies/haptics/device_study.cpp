@@ -121,7 +121,7 @@ HapticProperties wall(double stiffness) {
   return haptics;
 }
 
-constexpr double kBlow = 0.6, kFor = 0.01; // [N], [s]
+constexpr double kBlow = 0.6, kFor = 0.01; // force and duration of a blow [N], [s]
 
 // Presses the handle gently into the wall, then strikes it: is the final oscillation smaller than
 // after the blow? With backlash it never stops.

@@ -112,7 +112,7 @@ class HolderMesh {
   void join(const std::vector<std::int32_t>& outer, const std::vector<std::int32_t>& inner) {
     const std::size_t m = outer.size(), n = inner.size();
     for (std::size_t i = 0, j = 0; i < m || j < n;) {
-      // Advances where the next corner comes first.
+      // The loop whose next corner comes first goes on to it.
       if (j == n || (i < m && (i + 1) * n <= (j + 1) * m)) {
         mesh.triangles.push_back({outer[i % m], outer[(i + 1) % m], inner[j % n]});
         ++i;

@@ -240,7 +240,7 @@ class Recorder::Work {
     state_.notes = std::move(notes);
   }
 
-  // The camera is turned with the first frame and stays the same for all.
+  // The first frame decides how the calibration is turned; all later frames must have its size.
   void takeCamera(const SourceFrame& frame) {
     if (!std::exchange(taken_, true)) {
       shown_.width = frame.image.width;
@@ -399,7 +399,7 @@ class Recorder::Work {
 
   std::mutex mutex_; // guards all members below
   std::condition_variable changed_;
-  std::optional<NewFolder> fresh_; // removed if recording fails before any data
+  std::optional<NewFolder> fresh_; // deletes the new folder if no data follow
   std::unique_ptr<RowFile> frame_rows_, pose_rows_, probe_rows_;
   std::optional<Arrived> waiting_;
   RecordingState state_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 #include "acquisition/loaded/solver_library.h"
@@ -14,9 +15,25 @@
 namespace patina {
 namespace {
 
-constexpr int kSteps = 30;
+constexpr int kSteps = 40;
 constexpr double kSettledScale = 1e-4;
-constexpr double kMaxStep = 0.1; // largest step of the scale's logarithm
+constexpr double kMaxStep = 0.1;      // largest step of the scale's logarithm
+constexpr double kSettledShare = 0.3; // largest last step, over the scale's deviation
+constexpr int kSelections = 5;        // most times that the inliers are selected
+// Largest component of the scale in a direction that the points leave unobservable.
+constexpr double kUnobservableScale = 1e-2;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// Selects the inliers of a fit by its own residuals. Returns true if they change.
+bool selectAgain(PathFit& fit, double noise) {
+  std::vector<double> sizes;
+  for (const SurfaceResidual& residual : fit.residuals)
+    sizes.push_back(std::abs(residual.distance));
+  const double most = inlierThreshold(sizes, noise);
+  const std::vector<double> before = fit.weights;
+  for (std::size_t i = 0; i < sizes.size(); ++i) fit.weights[i] = sizes[i] <= most ? 1 : 0;
+  return fit.weights != before;
+}
 
 } // namespace
 
@@ -31,7 +48,8 @@ SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>
   std::vector<Vec3> scaled = points;
   PathFit left; // result of this fit
   left.residuals.resize(points.size());
-  for (const bool count : inliers) left.weights.push_back(count ? 1 : 0);
+  left.weights.assign(inliers.begin(), inliers.end());
+  int selections = 0;
   double variance = 0, radius = 1; // variance over that of a point
   for (int step = 0; step < kSteps && !fit.converged; ++step) {
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -43,11 +61,11 @@ SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>
     Vec7 right = Vec7::Zero();
     double squares = 0, n = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!inliers[i]) continue;
       const Vec3 p = fit.mesh_from_path * scaled[i];
       SurfaceResidual& residual = left.residuals[i];
       residual = target.residual(p, residual.foot.face);
       if (!indentations.empty()) residual.distance += indentations[i];
+      if (left.weights[i] == 0) continue;
       Vec7 g;
       g << scale.gradient(p, residual.direction),
           residual.direction.dot(p - scale.centre) / scale.radius;
@@ -60,7 +78,10 @@ SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>
     Vec7 change = Vec7::Zero();
     variance = 0;
     for (int k = 0; k < 7; ++k) {
-      if (!(eigen.values[k] > kRankTolerance * eigen.values[6])) continue;
+      if (!(eigen.values[k] > kRankTolerance * eigen.values[6])) {
+        if (std::abs(eigen.vectors(6, k)) > kUnobservableScale) variance = kInfinite;
+        continue;
+      }
       change += eigen.vectors.col(k) * eigen.vectors.col(k).dot(right) / eigen.values[k];
       variance += eigen.vectors(6, k) * eigen.vectors(6, k) / eigen.values[k];
     }
@@ -70,10 +91,13 @@ SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>
     limit(motion, scale, target.extent());
     fit.mesh_from_path = scale.motion(motion) * fit.mesh_from_path;
     fit.scale *= std::exp(growth);
-    fit.converged = std::abs(growth) < kSettledScale;
+    const double deviation = fit.rms * std::sqrt(variance) / radius;
+    fit.converged = std::abs(growth) < std::max(kSettledScale, kSettledShare * deviation) &&
+                    (++selections == kSelections || !selectAgain(left, noise));
   }
   const ResidualNoiseModel law = fitNoiseModel(scaled, left, noise);
   fit.deviation = law.deviation * std::sqrt(law.correlation_length * variance) / radius;
+  fit.residuals = std::move(left.residuals);
   return fit;
 }
 
@@ -85,7 +109,8 @@ constexpr int kJointMostSteps = 30, kJointRecounts = 5, kJointPlaces = 3;
 constexpr double kJointSettled = 1e-2; // tolerance of a step over its deviation
 // Smallest ratio of the clock's information to that of the force's noise.
 constexpr double kJointMinInformation = 10;
-constexpr double kJointNamed = 0.15; // smallest square of a named component of a direction
+// A message names the components whose squared share of a direction exceeds this.
+constexpr double kJointNamed = 0.15;
 
 struct Values {
   Pose pose;

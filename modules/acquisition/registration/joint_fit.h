@@ -16,12 +16,14 @@ struct SimilarityFit {
   double scale = 1;                       // scale of the path
   double deviation = 0;                   // standard deviation of the scale
   double rms = 0;                         // inliers [m]
+  std::vector<SurfaceResidual> residuals; // all points
   bool converged = false;
 };
 
-// Gauss-Newton over pose and scale with the inliers of a given fit. The deviation follows from this
-// fit's own residuals (fitNoiseModel() with the lower limit `noise`), because those of a fit
-// without scale contain the misfit. `indentations`: see FitOptions.
+// Gauss-Newton over pose and scale. Starts with the inliers of a fit without scale, which may be
+// the few that another size leaves on the surface, and selects them again by inlierThreshold(). The
+// deviation follows from this fit's own residuals (fitNoiseModel() with the lower limit `noise`).
+// `indentations`: see FitOptions.
 SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>& points,
                             const Pose& mesh_from_path, const std::vector<bool>& inliers,
                             const std::vector<double>& indentations, double noise);

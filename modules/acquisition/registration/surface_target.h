@@ -19,8 +19,8 @@ struct SurfaceResidual {
 // Immutable; may be used from any thread.
 class SurfaceTarget {
  public:
-  // Throws std::invalid_argument as TriangleTree does, Error if the offset, the radius of a probe's
-  // tip, exceeds half the mesh's longest side, as one in another unit does. Front and back are
+  // Throws std::invalid_argument as TriangleTree does, and Error if the offset, the radius of a
+  // probe's tip, exceeds half the mesh's longest side: their units then differ. Front and back are
   // distinguished if the offset [m] is not 0 or `sided` is true.
   SurfaceTarget(TriangleMesh mesh, double offset, bool sided = false);
   SurfaceTarget(const SurfaceTarget&) = delete;

@@ -1,4 +1,5 @@
-// Renders a camera's frames of a simulated hand's probe (A04).
+// Renders a camera's frames of a simulated hand's probe by ray casting (A04), for tests and
+// simulated scans. The pictures share only the lens model with the tracker.
 #pragma once
 
 #include <functional>
@@ -9,13 +10,10 @@
 
 namespace patina {
 
-// Renders pictures of a marker rig by ray casting, for tests and simulated scans (A04). It shares
-// only the lens model with the tracker.
-
 // A marker of the rig as it is printed.
 struct PrintedMarker {
   RigMarker place;
-  int side = 0;           // bits
+  int side = 0;           // bits per side, without the black border
   std::uint64_t code = 0; // see MarkerFamily
   double margin = 1;      // white margin around the black border, in bits
 };
@@ -39,14 +37,14 @@ struct FrameLook {
   std::vector<Occluder> occluders;
 };
 
-// Data common to all frames of a camera.
+// Renders frames of one camera; the lens rays are computed once.
 class FrameRenderer {
  public:
   // Throws std::invalid_argument if the lens model is not invertible within the picture. Beyond 89
   // degrees from the axis of a fisheye lens the picture shows the ground.
   FrameRenderer(const Camera& camera, std::vector<PrintedMarker> markers);
 
-  // `camera_from_probe` are poses at even times of the exposure, at least one.
+  // `camera_from_probe` are poses at equally spaced times of the exposure, at least one.
   GreyFrame render(const std::vector<Pose>& camera_from_probe, const FrameLook& look,
                    std::uint32_t seed) const;
 
@@ -73,7 +71,7 @@ struct CaptureSettings {
 };
 
 using ProbeMotion = std::function<Pose(double t)>; // camera_from_probe
-// Refers to the hand, which must stay as it is.
+// The result refers to `hand`, which must outlive it unchanged.
 ProbeMotion motionOf(const SimulatedHand& hand, const ProbeModel& probe,
                      const Pose& camera_from_world);
 // Returns frame i, at the time i / rate.

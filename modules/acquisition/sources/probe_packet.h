@@ -1,4 +1,4 @@
-// Parser of a probe's packets (docs/usb_protocol.md), apart from firmware/probe_packer.h.
+// Parser of a probe's packets (docs/usb_protocol.md), written independently of the encoder.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ using ProbePacket = std::span<const std::byte>;
 struct ProbeChannel {
   std::string name, unit;
   double scale = 1, zero = 0;   // value = scale (count - zero)
-  double low = 0, high = 0;     // measuring range
+  double low = 0, high = 0;     // measuring range, in `unit`
   double noise = 0;             // standard deviation at rest
   std::uint32_t calibrated = 0; // days since 1970-01-01; 0: never
 };
@@ -30,15 +30,17 @@ struct ProbeDescription {
   std::uint32_t firmware = 0; // 65536 * major + minor
   double period = 0;          // sampling interval [s]
   unsigned samples_per_packet = 1;
-  std::vector<ProbeChannel> channels; // force, a1u, a1v, a2u, a2v, and perhaps wx, wy, wz
+  // force, two axes of each of two accelerometers, and perhaps the gyroscope's three rates
+  std::vector<ProbeChannel> channels;
   bool hasGyroscope() const { return channels.size() == kMaxProbeChannels; }
 };
 
 struct ProbeSamples {
-  std::uint32_t packet = 0;  // packet number
-  std::uint32_t first = 0;   // number of its first sample
-  std::uint64_t time_ns = 0; // time of this sample on the probe's clock
-  bool saturated = false, sensor_silent = false;
+  std::uint32_t packet = 0;   // packet number
+  std::uint32_t first = 0;    // number of its first sample
+  std::uint64_t time_ns = 0;  // time of this sample on the probe's clock
+  bool saturated = false;     // a value is beyond its measuring range
+  bool sensor_silent = false; // a sensor gave no value
   std::size_t count = 0;
   std::size_t channels = kProbeChannels; // kMaxProbeChannels with a gyroscope
   std::array<std::array<std::int16_t, kMaxProbeChannels>, 4> counts{};

@@ -16,9 +16,10 @@ constexpr std::uint8_t kIn = 0x81;
 constexpr std::uint8_t kFromProbe = 0xc1, kToProbe = 0x41; // vendor, interface
 constexpr std::uint8_t kDescribe = 1, kStream = 2;
 constexpr unsigned kAnswer = 500, kWait = 100; // [ms]
-constexpr double kSilence = 2;                 // [s]
-constexpr double kMended = 7;                  // [s]: the kernel may take 5 to clear a halt
-constexpr double kTogether = 0.01;             // [s]: packets of this time are read in one transfer
+// longest time without data before the probe is called silent [s]
+constexpr double kSilence = 2;
+constexpr double kMended = 7;      // [s]: the kernel may take 5 to clear a halt
+constexpr double kTogether = 0.01; // [s]: packets of this time are read in one transfer
 constexpr std::size_t kMaxTogether = 16;
 
 const char* const kUndescribed =

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kSteepest = 0.5; // smallest cosine between the normals of mesh and heights
 constexpr double kApart = 0.5e-3; // smallest distance of places that count for the mean normal [m]
-constexpr double kLook = 0.1;     // half window of the speed, longer than tremor [s]
+// half width of the window in which speed is measured, longer than a tremor [s]
+constexpr double kLook = 0.1;
 
 struct Placed {
   ScanHeight height;

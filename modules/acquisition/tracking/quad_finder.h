@@ -9,8 +9,9 @@ using Quad = std::array<Vec2, 4>; // clockwise in the picture, to about half a p
 
 struct QuadOptions {
   double threshold_fraction = 0.5; // threshold between the local minimum (0) and maximum (1)
-  int contrast = 20;               // smallest contrast of a dark pixel [grey levels]
-  double shortest = 8;             // shortest side [px]
+  // smallest max - min of a neighbourhood in which dark pixels are sought [grey levels]
+  int contrast = 20;
+  double shortest = 8; // shortest side [px]
 };
 
 std::vector<Quad> findQuads(const GreyFrame& image, const QuadOptions& search = {});

@@ -35,7 +35,7 @@ struct UnionSurface {
 UnionSurface unionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
                           const TriangleMesh& joint, const Progress& progress);
 
-// The same, with the caps of the parts' sheets.
+// Returns unionSurface() with the caps, which are the backs and sides of thickened sheets.
 UnionSurface closedUnionSurface(std::span<const FieldPart> parts, const BlockLattice& lattice,
                                 const TriangleMesh& joint, const Progress& progress);
 

@@ -36,10 +36,11 @@ struct ConnectedParts {
   double gap = 0; // largest distance across which pieces are joined [m]
 };
 
-// Finds the parts of a welded mesh. A piece is a set of faces connected by edges. A boundary edge
-// is near another piece if the middle of one of its boundary edges is at most 0.7 `reach` away. A
-// piece takes part if this holds for half its boundary (three tenths for fewer than four faces). It
-// is joined to the pieces whose edges match its own or, without such, to all nearby.
+// Finds the parts of a welded mesh. A piece is a set of faces connected by edges. Boundary edges of
+// two pieces are near each other if their middles are at most 0.7 `reach` apart. A piece takes part
+// if half the length of its boundary is near others (three tenths for fewer than four faces). Each
+// such edge joins it to the piece of its matching edge or, without one, to all near pieces that
+// take part.
 ConnectedParts connectedParts(const TriangleMesh& mesh, double reach);
 
 struct Hole {

@@ -58,7 +58,7 @@ inline void search(const LatticeJob& job, const Points& p, const Box& box, std::
   }
 }
 
-// The same without sorting, which does not pay if the limits are tight already.
+// Searches like search() but does not sort the children: tight limits leave few of them.
 inline void searchWarm(const LatticeJob& job, const Points& p, const Box& box, std::int32_t at,
                        Answer& answer) {
   std::int32_t stack[kStack];

@@ -38,7 +38,7 @@ struct Contact {
   double clearance = std::numeric_limits<double>::infinity();
   Vec3 displacement = Vec3::Zero(); // movement of c since the last tick [m]; 0 at first contact
   Vec3 normal = Vec3::Zero();       // unit, outward; zero if undefined (K05)
-  Vec3 frictionless_point = Vec3::Zero(); // c: contact point (VCP) without friction
+  Vec3 frictionless_point = Vec3::Zero(); // c: contact point without friction
   double depth = 0;                       // d = |c - x| [m]
   // Walls that constrain c, by decreasing multiplier: c - x is the sum of multiplier times normal.
   // If c is still on its way (snap), the multipliers are those of its destination.
@@ -68,11 +68,12 @@ struct Contact {
 
   // ReliefStage and RoughnessStage
   Vec3 slope = Vec3::Zero(); // `normal` is parallel to n - slope
-  double relief_jump = 0;    // bound of the VCP's movement by relief in this tick [m]
+  double relief_jump = 0;    // bound of the contact point's movement by relief in this tick [m]
 
   // FrictionStage
   double stick_radius = 0; // largest distance of p from c while sticking [m]; 0: slipping
-  double slip_jump = 0;    // sudden release of the VCP in this tick [m]; also of RayStage's snap
+  // sudden release of the contact point in this tick [m]; also of RayStage's snap
+  double slip_jump = 0;
 
   // MagnetStage
   bool attracted = false; // attracted without contact

@@ -22,15 +22,16 @@ constexpr double kMaxStep = 0.1;
 constexpr double kDeep = 0.35; // deeper evaluations say nothing about the wall in front
 constexpr double kFlat = 0.2, kMinSlope = 0.3;
 constexpr double kMaxValidityRadius = 2;
-constexpr double kValidityRadius = 1; // validity radius of a wall around a feasible VCP
+constexpr double kValidityRadius = 1; // validity radius of a wall around a feasible contact point
 constexpr double kSameWall = 0.97;
 constexpr double kMaxNormalChange = 0.06; // squared difference of normals with that cosine
 constexpr double kViolated = 0.02;
 constexpr double kRelinearize = 0.3; // an active wall linearised farther away is evaluated again
 constexpr double kStaleValidity = 0.25;
 constexpr double kDropDistance = 2;
-constexpr double kEnergyMemory = 100;        // path over which generated energy decays [voxel]
-constexpr double kMaxGeneratedEnergy = 4e-3; // energy from which it is dissipated [voxel^2]
+constexpr double kEnergyMemory = 100; // path over which generated energy decays [voxel]
+// generated energy above which the exact gradient is blended in [voxel^2]
+constexpr double kMaxGeneratedEnergy = 4e-3;
 constexpr double kRoundingMargin = 1 + 1e-6; // rounding margin of a squared bound
 constexpr double kAlwaysSpread = 1e-12;
 constexpr int kMaxSlides = 3, kMinEvaluations = 3, kMaxEvaluations = 8, kMaxSecants = 4,

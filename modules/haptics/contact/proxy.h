@@ -1,4 +1,4 @@
-// Virtual contact point (VCP) as a constrained closest point (P01 to P12), a god-object or proxy
+// Contact point of the surface as a constrained closest point (P01 to P12), a god-object or proxy
 // (Zilles & Salisbury 1995; Ruspini et al. 1997), in grid coordinates: independent of the model's
 // size.
 #pragma once
@@ -17,7 +17,8 @@ struct NormalRate {
   Vec3 per_voxel = Vec3::Zero(); // [1/voxel]
 };
 
-// State of a contact between ticks: VCP and linearised walls; missing walls are evaluated again.
+// State of a contact between ticks: contact point and linearised walls; missing walls are evaluated
+// again.
 struct Proxy {
   Vec3 c = Vec3::Zero();
   Walls walls;
@@ -27,8 +28,9 @@ struct Proxy {
 
 struct ProxyMove {
   bool touching = false;
-  bool snap = false; // the VCP moved without the tip, by the largest step of a tick: past the axis
-                     // of a limb
+  // The contact point moved without the tip, by the largest step of a tick: past the axis of a
+  // limb.
+  bool snap = false;
   int samples = 0;
   double clearance = 0;                    // phi - iso at x without contact
   bool smooth = false;                     // a single wall holds c, along its normal to the tip

@@ -13,9 +13,10 @@ SurfaceJacobian closestPointJacobian(const FieldSampler& sampler, const Vec3& q,
 
 SurfaceJacobian jacobianOf(const FieldSampler& sampler, const Contact& contact) noexcept;
 
-// Returns J times `along` at contact.surface. Two walls leave J only their common line, three leave
-// nothing; this also holds where ActiveConstraints merges two walls, because the contact point
-// stays on their line. Computes J once per tick and stores it in the contact.
+// Returns J times `along` at contact.surface. J is the derivative of the contact point with respect
+// to the tip: two active walls let that point move only along their common line, three not at all.
+// This also holds where ActiveConstraints merges two walls, because the contact point stays on
+// their line. Computes J once per tick and stores it in the contact.
 inline Vec3 pulledBack(const FieldSampler& sampler, Contact& contact, const Vec3& along) noexcept {
   if (!contact.jacobian) contact.jacobian = jacobianOf(sampler, contact);
   return *contact.jacobian * along;

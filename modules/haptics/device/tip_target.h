@@ -75,7 +75,7 @@ class SpeedLimitedTip {
   bool on_path_ = false, on_leg_ = false;
   Vec3 from_ = Vec3::Zero();
   TipTarget::Waypoint to_;
-  double leaves_ = 0, now_ = 0; // pointer time [s]
+  double leaves_ = 0, now_ = 0; // pointer times at which the segment begins and now [s]
 };
 
 } // namespace patina

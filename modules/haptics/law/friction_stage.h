@@ -1,4 +1,4 @@
-// Stick-slip friction that limits the movement of the VCP (K09, K10).
+// Stick-slip friction that limits the movement of the contact point (K09, K10).
 #pragma once
 
 #include <optional>
@@ -24,13 +24,12 @@ struct FrictionMemory {
   bool slipping() const noexcept { return stick && stick->slipping; }
 };
 
-// mu_s and mu_d come from the material; painted mu_s < mu_d acts like mu_s = mu_d. The VCP p sticks
-// until |p - c| exceeds mu_s d, then follows the frictionless point c at mu_d d until |p - c| <
-// mu_d d. Direction of p - c while slipping:
-//  paper         from c to the last p, which lags by up to mu_d d on a curved path;
-//  displacement  against the tip's motion in the tangent plane at c, free of the field's noise,
-//                averaged over 0.05 voxel against the tip's noise, and extrapolated to the end
-//                of the tick by the last rotation.
+// mu_s and mu_d come from the material; painted mu_s < mu_d acts like mu_s = mu_d. The contact
+// point p sticks until |p - c| exceeds mu_s d, then follows the frictionless point c at mu_d d
+// until |p - c| < mu_d d. Direction of p - c while slipping: paper         from c to the last p,
+// which lags by up to mu_d d on a curved path; displacement  against the tip's motion in the
+// tangent plane at c, free of the field's noise, averaged over 0.05 voxel against the tip's noise,
+// and extrapolated to the end of the tick by the last rotation.
 class FrictionStage final : public ForceStage {
  public:
   // `friction`: only the values that no material has. raised: relief lifts the surface off phi =

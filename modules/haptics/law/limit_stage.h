@@ -38,12 +38,12 @@ Vec3 scaledTo(const Vec3& force, double limit) noexcept;
 
 // A jump fault is a change of the unlimited force within a tick by more than 2 v_max (K T + B),
 // plus expected jumps: K times the slip's release, the magnet's step at its range, and (K + B/T)
-// times the VCP's movement by relief. K is the larger of this and the last tick's stiffness, B the
-// scene's largest damping. After a fault the last force fades to zero over kFaultFadeTime, and the
-// new force fades in over kFaultReturnTime, wherever the tip is. A v_max above kHandSpeed raises
-// the threshold up to the force limit only, or a large model of ordinary stiffness would never
-// fault. T is the time since the last tick, clamped to 0.1 .. 50 ms, so that a missed tick is no
-// fault. The first tick is never a fault. The force rate is never limited.
+// times the contact point's movement by relief. K is the larger of this and the last tick's
+// stiffness, B the scene's largest damping. After a fault the last force fades to zero over
+// kFaultFadeTime, and the new force fades in over kFaultReturnTime, wherever the tip is. A v_max
+// above kHandSpeed raises the threshold up to the force limit only, or a large model of ordinary
+// stiffness would never fault. T is the time since the last tick, clamped to 0.1 .. 50 ms, so that
+// a missed tick is no fault. The first tick is never a fault. The force rate is never limited.
 class LimitStage final : public ForceStage {
  public:
   explicit LimitStage(const LimitSpec& spec) : spec_(spec) {}

@@ -12,7 +12,8 @@ namespace patina {
 struct PaintedRange {
   std::array<bool, kMaterialChannels> painted{}; // on any object
   Material min, max;                             // with the scene's own values
-  double relief = 0;            // H, largest |height| of relief outside the field [m]
+  // H, the largest |height| of relief that is not baked into the field [m]
+  double relief = 0;
   bool baked = false;           // relief is part of the field
   double texture_stiffness = 0; // stiffest texture with its own stiffness [N/m]; 0: none
   double layer = 0;             // height of texture layers above their lowest point [m]

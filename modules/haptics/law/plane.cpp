@@ -10,7 +10,7 @@
 namespace patina {
 namespace {
 
-// The VCP is vertically above the tip (K06).
+// The contact point is vertically above the tip (K06).
 class PlaneStage final : public ForceStage {
  public:
   void apply(Contact& contact, ContactMemory& memory) const noexcept override {

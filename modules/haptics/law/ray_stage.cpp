@@ -94,7 +94,7 @@ void RayStage::apply(Contact& contact, ContactMemory& memory) const noexcept {
     const RayRoot root = rayRoot(sampler_, q, contact.normal, depth, iso_);
     contact.samples += root.samples;
     // The slope of a distance is 1. At a crease the blended gradient is shorter, and dividing by it
-    // would move the VCP far beyond the part.
+    // would move the contact point far beyond the part.
     if (root.found) depth = root.s;
   }
   contact.depth = depth * voxel_;

@@ -66,7 +66,7 @@ double slopeLength(const Contact& contact) noexcept {
   return true;
 }
 
-// Adds the largest movement of the VCP by relief since the last tick.
+// Adds the largest movement of the contact point by relief since the last tick.
 void announceStep(Contact& contact, TextureMemory& memory, double height,
                   const Vec3& slope) noexcept {
   TextureMemory::Sample now{height, contact.depth, slope, slope.squaredNorm()};

@@ -78,13 +78,11 @@ class Reliefs {
 
 // Follows a contact with an offset envelope `envelope` [m] and lowers it to the relief: d -=
 // envelope - h; without depth there is no contact. conservative: the force is the gradient of 1/2 K
-// d^2, K d (n - J^T grad h); literal: K d n (F6). The VCP is x + d (n - J^T grad h): on the slope's
-// normal, beyond the relief by d |grad h|^2.
-//
-// Relief at the height of the envelope with a flat image leaves the contact stage's bits unchanged.
-// Slopes at cliffs are not clamped, because the height would lose its gradient; the limit stage
-// bounds their force, and their change per tick is announced in Contact::relief_jump so that it is
-// no fault.
+// d^2, K d (n - J^T grad h); literal: K d n (F6). The contact point is x + d (n - J^T grad h): on
+// the slope's normal, beyond the relief by d |grad h|^2.  Relief at the height of the envelope with
+// a flat image leaves the contact stage's bits unchanged. Slopes at cliffs are not clamped, because
+// the height would lose its gradient; the limit stage bounds their force, and their change per tick
+// is announced in Contact::relief_jump so that it is no fault.
 class ReliefStage final : public ForceStage {
  public:
   ReliefStage(std::shared_ptr<const Reliefs> reliefs, double envelope, ForceForm form)

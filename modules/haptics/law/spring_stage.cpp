@@ -27,7 +27,7 @@ void VelocityFilterStage::apply(Contact& contact, ContactMemory& memory) const n
 
 namespace {
 
-// Adds tangential damping while the VCP sticks, within the limit of stiction.
+// Adds tangential damping while the contact point sticks, within the limit of stiction.
 void dampSticking(Contact& contact, const Vec3& damper) noexcept {
   if (!(contact.stick_radius > 0)) return;
   const Vec3& n = contact.normal;

@@ -30,7 +30,7 @@ class VelocityFilterStage final : public ForceStage {
 // so that none pulls (K08) and the damping force is at most B |v|, even for nearly parallel walls.
 // A magnetic surface may pull, and its attraction is damped too. Damping acts on the tip, not on
 // its distance to the contact point, which must not push when it turns round a crease. While the
-// VCP sticks, tangential motion is damped too (MATH 2.6), within the limit of stiction.
+// contact point sticks, tangential motion is damped too (MATH 2.6), within the limit of stiction.
 void dampConstrainedMotion(Contact& contact, double damping, bool magnetic) noexcept;
 
 // Applies dampConstrainedMotion() with B of the material, or the scene's B for a magnet.

@@ -73,7 +73,8 @@ void LinkLoop::exchange(const LinkCommand& command) noexcept {
   const bool somewhere =
       effectiveStatus(reading_) == DeviceStatus::ok && reading_.position.allFinite();
   if (somewhere ||
-      reading_.status == DeviceStatus::calibrating) { // it responds, if without a position
+      // a calibrating device responds without a position
+      reading_.status == DeviceStatus::calibrating) {
     shown_ = reading_;
     good_at_ = after;
     if (somewhere)

@@ -15,11 +15,11 @@ class TextureReader {
  public:
   explicit TextureReader(const ReliefSurface& relief);
 
-  // Evaluates as reliefAt() without `hessian`, into `at`, which is ReliefAt{}. Returns false, `at`
+  // Evaluates as reliefAt() does, without the second derivative. `at` must be ReliefAt{}. Returns
   // unchanged, if readClosest() is needed: near an edge, with an image, or for an invalid face.
   bool read(const Vec3& c, std::int32_t near_face, ReliefAt& at) const noexcept {
     if (static_cast<std::size_t>(near_face) >= faces_) return false;
-    // Order of results.
+    // The kernel writes height and rate as one array.
     static_assert(offsetof(PatchAt, height) == 0 && offsetof(PatchAt, rate) == sizeof(double) &&
                   std::is_standard_layout_v<PatchAt>);
     TextureHit foot;

@@ -14,9 +14,9 @@ template <class T> std::vector<T> sharedCopy(const std::vector<T>& flags) {
   return std::vector<T>(flags.size());
 }
 
-// Set of unshared parts; a copy starts empty, because it shares every part. The original must be
-// cleared by published(). Reference counts cannot replace this: a thread that dropped its pointer
-// may still be reading.
+// Set of the parts that no copy shares. A copy starts empty, because it shares every part; the
+// owner's published() must then clear the original. Reference counts cannot replace this: a thread
+// that dropped its pointer may still be reading.
 template <class Set> struct UniqueFlags {
   Set set;
 

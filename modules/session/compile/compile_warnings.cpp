@@ -27,7 +27,8 @@ constexpr double kWarnHole = 0.01;   // share of the area
 constexpr std::size_t kMaxHoles = 4; // lines
 constexpr double kLargestScene = 2;  // [m]
 
-// Number of directions over half a turn in the plane of a face; each is a line through the part.
+// Number of directions over half a turn in the plane of a face, along which a part's thickness is
+// measured.
 constexpr int kAcross = 8;
 
 struct ThinParts {

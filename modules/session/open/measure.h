@@ -25,13 +25,13 @@ struct Measurement {
 // Returns the point of the mesh nearest to `p`, which lies on the surface to about a voxel.
 MeasuredPoint measuredPointAt(const CompiledScene& scene, const Vec3& p);
 
-// Straight, and along the surface by a geodesic of the mesh if both lie on it. Throws Cancelled.
+// Measures straight and, if both points lie on the mesh, along a geodesic. Throws Cancelled.
 Measurement measureDistance(const CompiledScene& scene, const MeasuredPoint& a,
                             const MeasuredPoint& b, const Progress& progress = Progress());
 // The angle is the one at the second point.
 Measurement measureAngle(const MeasuredPoint& a, const MeasuredPoint& corner,
                          const MeasuredPoint& b);
-// Fits the vertices within `radius` [m]; see patchAround().
+// Fits a sphere or a cylinder to the vertices within `radius` [m]; see patchAround().
 Measurement measureSphere(const CompiledScene& scene, const MeasuredPoint& point, double radius);
 Measurement measureCylinder(const CompiledScene& scene, const MeasuredPoint& point, double radius);
 // Returns the area of the painted patch about the point; see paintedPatchAt().

@@ -263,7 +263,7 @@ void ToolLayer::place() {
   const bool near = sample_.contact || sample_.attracted;
   const Vec3 seen = seenContact(sample_);
   placeBall(*contact_, seen, 0.004 * length_);
-  // A segment of length zero would leave the rod at its own length of 1 m.
+  // The stem would keep its own length of 1 m if its segment had length zero.
   const bool apart = (seen - held).norm() > 1e-4 * length_;
   if (apart) stretch(*stem_, held, seen, 0.0013 * length_);
   stretch(*spring_, sample_.tip, held, 0.0016 * length_);

@@ -14,8 +14,8 @@
 
 namespace patina {
 
-// Contact point on the original surface below the VCP (K12). An offset and a tip's radius lie
-// between them; friction, which holds back the VCP, holds back this point too.
+// Contact point on the original surface below the contact point (K12). An offset and a tip's radius
+// lie between them; friction, which holds back the contact point, holds back this point too.
 Vec3 seenContact(const ToolSample& sample);
 
 class ToolLayer {
