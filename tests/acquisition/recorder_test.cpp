@@ -12,6 +12,7 @@
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
 #include "acquisition/recording/min_delay_clock.h"
+#include "core/append_file.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "support/fresh_folder.h"
@@ -198,6 +199,34 @@ TEST_F(Recordings, RefuseAFolderThatHoldsAScan) {
                         openProbe((scan / "probe.csv").string()), setup()),
                Error);
   EXPECT_FALSE(fs::exists(made));
+}
+
+// A recording that was killed before its first row hinders no later one.
+TEST_F(Recordings, ReplaceOneThatNeverBegan) {
+  makeScan(0.2);
+  const auto record = [&] {
+    Recorder recorder(openFrames("replay:" + scan.string(), 0), nullptr, setup());
+    EXPECT_EQ(finished(recorder).error, "");
+  };
+  const std::string header = "frame,t [s]\n";
+  const auto leave = [&](bool table) {
+    fs::remove_all(made);
+    fs::create_directories(made / "frames");
+    writeFileAtomically(made / "frames" / "000000.pgm", "P5");
+    if (table) writeFileAtomically(made / "frames.csv", header);
+  };
+  leave(true);
+  EXPECT_NO_THROW(record());
+  EXPECT_NE(readFile(made / "frames" / "000000.pgm"), "P5");
+
+  leave(false); // pictures of someone else
+  EXPECT_THROW(record(), FileError);
+  EXPECT_EQ(readFile(made / "frames" / "000000.pgm"), "P5");
+
+  leave(true);
+  const AppendFile recording(made / "frames.csv");
+  EXPECT_THROW(record(), FileError);
+  EXPECT_EQ(readFile(made / "frames" / "000000.pgm"), "P5");
 }
 
 TEST_F(Recordings, EndWithFramesOfAnotherSize) {

@@ -73,7 +73,7 @@ class Promises : public EveryCommand {
   static std::string stateOf(const std::string& output) {
     if (!fs::exists(output)) return "";
     if (fs::is_regular_file(output)) return readFile(output);
-    if (fs::exists(output + "/camera.yml")) return recordingState(output);
+    if (output.ends_with("recording")) return recordingState(output);
     if (!isWorkspace(output)) return isUnfinishedWorkspace(output) ? "" : "is no workspace";
     const OpenedWorkspace opened = openWorkspace(output);
     const FoldedJournal fold = folded(opened.journal, output);

@@ -1,5 +1,7 @@
 #include "acquisition/recording/recorder.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -86,7 +88,38 @@ std::string greyText(const GreyFrame& image) {
   return text;
 }
 
+constexpr std::array kTables = {"frames.csv", "probe.csv", "poses.tum"};
+
+// Returns true also if another program is writing the table or it cannot be read.
+bool hasRow(const fs::path& table) {
+  if (!pathExists(table)) return false;
+  try {
+    if (fs::file_size(table) > kPage) return true;
+    const std::string text = AppendFile(table).content();
+    return std::count(text.begin(), text.end(), '\n') > 1;
+  } catch (const std::exception&) {
+    return true;
+  }
+}
+
+// Removes what a recording leaves that was killed before its first rows were on disk: tables
+// without a row, and pictures whose times are lost.
+void removeUnbegun(const fs::path& folder) {
+  constexpr std::ptrdiff_t kMostPictures = 60; // far above those of a quarter of a second
+  const fs::path frames = folder / "frames";
+  if (!pathExists(folder / kTables[0])) return;
+  for (const char* table : kTables)
+    if (hasRow(folder / table)) return;
+  std::error_code ignored; // What cannot be removed is a scan, which requireNoScan() reports.
+  if (std::distance(fs::directory_iterator(frames, ignored), {}) > kMostPictures) return;
+  fs::remove_all(frames, ignored);
+  for (const char* table : kTables) fs::remove(folder / table, ignored);
+}
+
 void requireNoScan(const fs::path& folder) {
+  removeUnbegun(folder);
+  std::error_code ignored;
+  if (fs::is_empty(folder / "frames", ignored)) fs::remove(folder / "frames", ignored);
   for (const char* name : {"frames", "frames.csv", "probe.csv", "poses.tum"})
     if (fs::symlink_status(folder / name).type() != fs::file_type::not_found)
       throw FileError(folder.string(), 0, "holds a scan already: name another folder");
