@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/numbers.h"
+#include "workspace/content_files.h"
 #include "workspace/migrations.h"
 
 namespace patina {
@@ -234,8 +235,22 @@ Json toJson(const Manifest& manifest) {
   return json;
 }
 
+namespace {
+
+// Text that is no JSON was damaged, for this program writes it as a whole.
+Json intactJson(std::string_view text, const std::string& name) {
+  try {
+    return parseJson(text, name);
+  } catch (const FileError& error) {
+    const std::string said = error.what();
+    throw FileError(name, error.line(), said.substr(said.find(": ", name.size()) + 2) + kAdvice);
+  }
+}
+
+} // namespace
+
 Manifest parseManifest(std::string_view text, const std::string& name) {
-  const Json json = parseJson(text, name);
+  const Json json = intactJson(text, name);
   requireNoNul(text, name);
   try {
     return manifestFrom(json);

@@ -386,6 +386,14 @@ TEST_F(AlignDeskTest, ShowsAFitsResidualsAsLinesAndOnTheMesh) {
   clickOn("align_map");
   const QImage map = picture("align_map");
   EXPECT_GT(changed(plain, map), 0.1);
+  clickOn("align_map");
+  scrollTo("align_next");
+  clickOn("align_next");
+  EXPECT_GT(changed(plain, picture("align_next")), 0.1);
+  EXPECT_TRUE(find<QLabel>("align_next_words")->text().contains(QStringLiteral("the stroke")));
+  clickOn("align_next");
+  EXPECT_EQ(find<QLabel>("align_next_words")->text(), QString());
+  clickOn("align_map");
   // A move by hand hides the old map at once; the new one is for the present pose.
   type('z', kControl);
   EXPECT_FALSE(desk().alignment().found());

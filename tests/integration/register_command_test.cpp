@@ -52,6 +52,19 @@ TEST_F(RegisteredScans, FindTheirPoseWithoutAFirstGuess) {
   }
 }
 
+TEST_F(RegisteredScans, GiveTheNextStroke) {
+  scan("dinosaur", "+x", "4");
+  const std::string stroke = folder / "next.csv";
+  const Outcome outcome =
+      run({"register", mesh, path, "-o", out, "--next-stroke", stroke, "--json"});
+  EXPECT_LT(outcome.exit, 2) << outcome.err;
+  const Json known = parseJson(outcome.out, "report").at("known");
+  EXPECT_LT(known.at("pose_after").asNumber(), known.at("pose").asNumber());
+  EXPECT_GT(readCsv(stroke, {"x [m]", "y [m]", "z [m]"}).rows.size(), 3U);
+  expectOneLineError(run({"register", mesh, path, "-o", out, "--next-stroke", out}),
+                     {"another output's file"});
+}
+
 // Each sample shows a little of a rotation, and all of them together only noise.
 TEST_F(RegisteredScans, ReportUnobservableMotionsOnAPlate) {
   scan("plate", "+z", "8", "1");
@@ -131,8 +144,8 @@ TEST_F(RegisteredScans, GiveHeightsOverTheirMesh) {
   ASSERT_EQ(
       run({"register", mesh, path, "-o", out, "--compliance", "3.333e-4", "--report", report}).exit,
       0);
-  const Json found = runJson({"filter", scanned, "-o", path, "--heights", heights, "--reference-mesh", mesh,
-                              "--registration", report});
+  const Json found = runJson({"filter", scanned, "-o", path, "--heights", heights,
+                              "--reference-mesh", mesh, "--registration", report});
   const Json& stiffness = found.at("stiffness");
   EXPECT_NEAR(stiffness.at("value").asNumber(), 3000, 3 * stiffness.at("deviation").asNumber());
   double squares = 0, count = 0, last = -1, stretch = -1;
@@ -197,10 +210,11 @@ TEST_F(RegisteredScans, StartFromAFirstGuessByHand) {
     return parseJson(outcome.out, "report").at("mesh_from_scan").dump();
   };
   EXPECT_EQ(found("--initial-values", "10mm,-20mm,0.4,90,0,90"), found("--initial", pose));
-  expectOneLineError(run({"register", mesh, path, "-o", out, "--initial-values", "1,2,3"}), {"--initial-values"});
-  expectOneLineError(
-      run({"register", mesh, path, "-o", out, "--initial-values", "0,0,0,0,0,0", "--initial", pose}),
-      {"--initial"});
+  expectOneLineError(run({"register", mesh, path, "-o", out, "--initial-values", "1,2,3"}),
+                     {"--initial-values"});
+  expectOneLineError(run({"register", mesh, path, "-o", out, "--initial-values", "0,0,0,0,0,0",
+                          "--initial", pose}),
+                     {"--initial"});
 }
 
 TEST_F(RegisteredScans, ReportFreeRotationsOnABall) {

@@ -208,6 +208,14 @@ TEST_F(BrokenWorkspace, BadValuesAreNamed) {
   }
 }
 
+TEST_F(BrokenWorkspace, NamesTheRemedyOfACutManifest) {
+  const std::string whole = readFile(json);
+  writeFileAtomically(json, whole.substr(0, whole.size() / 2));
+  const std::string said = errorOfLoading();
+  EXPECT_TRUE(says(said, "workspace.json:")) << said;
+  EXPECT_TRUE(says(said, ": JSON ends too early; restore it from a backup, or recover")) << said;
+}
+
 TEST_F(BrokenWorkspace, IsRepairedByASave) {
   writeFileAtomically(json, "{");
   saveWorkspace(sceneWithObjects(0.08), folder);

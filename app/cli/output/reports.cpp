@@ -181,6 +181,7 @@ bool areOne(const std::filesystem::path& a, const std::filesystem::path& b) {
   const auto end = [](const fs::path& path) { // resolves links, also to a missing file
     return fs::weakly_canonical(fs::absolute(outputTarget(path).path));
   };
+  if (a.empty() || b.empty()) return false;
   return end(a) == end(b) || fs::equivalent(a, b, unknown);
 }
 

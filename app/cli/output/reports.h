@@ -51,7 +51,7 @@ void requireWritable(const std::filesystem::path& path,
                      const std::vector<std::filesystem::path>& inputs = {},
                      std::optional<FileKind> kind = {});
 // Returns true if both paths lead to the same file, also through links and if it does not exist
-// yet.
+// yet. An empty path is none.
 bool areOne(const std::filesystem::path& a, const std::filesystem::path& b);
 
 } // namespace patina::cli

@@ -163,6 +163,7 @@ void AlignDesk::showPlace() {
   const std::optional<Registration>& found = alignment_.found();
   panel_->setFit(found ? fitWords(*found) : QString());
   draw();
+  drawMap();
   cost_profile_.start();
   emit changed();
 }
@@ -186,6 +187,9 @@ void AlignDesk::draw() {
   path.scale = colors_;
   if (colors_.range)
     path.scale.range = ValueRange{1e3 * colors_.range->low, 1e3 * colors_.range->high};
+  const ScanAdvice* next = advice();
+  const bool shows_deviation = next && !panel_->mapShown();
+  if (shows_deviation) path.title = tr("deviation [mm]").toStdString();
   double longest = 0;
   const auto add = [&](const Vec3& at, double distance, const Vec3& foot) {
     path.samples.push_back({static_cast<double>(path.samples.size()), at, 1e3 * std::abs(distance),
@@ -193,9 +197,16 @@ void AlignDesk::draw() {
     longest = std::max(longest, (at - foot).norm());
   };
   if (const std::optional<Registration>& found = alignment_.found()) {
+    const auto valueAt = [&](const SurfaceResidual& residual) {
+      if (!shows_deviation) return residual.distance;
+      const auto face = static_cast<std::size_t>(residual.foot.face);
+      const Triangle& corners = alignment_.target()->mesh().triangles[face];
+      return static_cast<double>(
+          next->known.height_deviation[static_cast<std::size_t>(corners[0])]);
+    };
     for (std::size_t i = 0; i < found->residuals.size(); ++i)
       if (found->inliers[i])
-        add(pose * alignment_.path()[i].position, found->residuals[i].distance,
+        add(pose * alignment_.path()[i].position, valueAt(found->residuals[i]),
             found->residuals[i].at);
   } else {
     for (std::size_t i = 0; i < alignment_.points().size(); ++i)
@@ -205,7 +216,11 @@ void AlignDesk::draw() {
   const double stretch = longest > kNoLine ? std::max(1.0, roundLength(room / longest)) : 1;
   path.stretch = panel_->linesShown() ? stretch : 0;
   panel_->setStretch(path.stretch);
-  central_views_->draw(std::move(path), picking_.marks(),
+  panel_->setNext(next ? shownText(inWords(*next)) : QString());
+  std::vector<DrawnMark> marks = picking_.marks();
+  if (next && next->stroke && !picking_.on())
+    for (const Vec3& p : next->stroke->points) marks.push_back({0, p});
+  central_views_->draw(std::move(path), marks,
                        picking_.on() ? std::nullopt : std::optional(alignment_.centroid()));
 }
 
@@ -217,10 +232,21 @@ void AlignDesk::setColors(const ColorScale& error) {
   drawMap();
 }
 
+const ScanAdvice* AlignDesk::advice() const {
+  const bool known =
+      advice_ && alignment_.found() && advised_pose_.isApprox(alignment_.pose(), 1e-12);
+  return known && panel_->nextShown() ? &*advice_ : nullptr;
+}
+
+// Errors and heights that are not known are nan, which is grey.
 void AlignDesk::drawMap() {
   std::vector<float> shown;
+  const ScanAdvice* next = advice();
   if (panel_->mapShown())
     for (const float error : cost_profile_.error()) shown.push_back(1e3F * error);
+  else if (next)
+    for (const float deviation : next->known.height_deviation)
+      shown.push_back(std::isfinite(deviation) ? 1e3F * deviation : std::nanf(""));
   central_views_->setMeshValues(shown);
 }
 
@@ -243,9 +269,12 @@ void AlignDesk::registerFromHere() {
     };
     try {
       const RegisteredScans scans = registerScans(*target, {path}, options, progress);
-      post(true, [this, rest, scans, found = scans.of(0)] {
+      const ScanAdvice next = adviceFor(*target, scans);
+      post(true, [this, rest, scans, next, found = scans.of(0)] {
         rest();
         move(found.mesh_from_path);
+        advice_ = next;
+        advised_pose_ = alignment_.pose();
         finishMove(found);
         for (const std::string& line : scans.warnings) emit notified({shownText(line), true});
         for (const std::string& line : scans.doubts)

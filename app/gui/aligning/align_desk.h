@@ -12,6 +12,7 @@
 #include "app/gui/aligning/align_files.h"
 #include "app/gui/aligning/align_panel.h"
 #include "app/gui/state/window_state.h"
+#include "scan/scan_advice.h"
 
 namespace patina {
 
@@ -66,6 +67,7 @@ class AlignDesk : public QObject {
   void showPlace();
   void draw();
   void drawMap();
+  const ScanAdvice* advice() const; // nullptr: not shown, or not known at this pose
   void setPicking(bool on);
   void pick(const Ray& sight, double reach);
   QString probeWords(const Ray& sight, double reach) const;
@@ -81,6 +83,8 @@ class AlignDesk : public QObject {
   QTimer pause_timer_;
   std::optional<std::pair<QString, AlignedPath>> offered_; // Waits for the answer to a question.
   ColorScale colors_;
+  std::optional<ScanAdvice> advice_; // after the last fit
+  Pose advised_pose_ = Pose::Identity();
   double reach_ = 1;                   // Range of the sliders [m].
   Pose drag_start_ = Pose::Identity(); // Pose at the start of the drag.
   // Last pose saved to a file or the workspace, or the first one.

@@ -78,7 +78,12 @@ AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
   map_ = addButton<QCheckBox>(
       column, "align_map", tr("Error map"),
       tr("Mean distance of nearby samples, shown on the mesh. Grey: no samples."));
-  for (QCheckBox* box : {lines_, map_})
+  next_ = addButton<QCheckBox>(
+      column, "align_next", tr("Next stroke"),
+      tr("Where to scan next: the stroke that would add most to what the fit knows of pose and "
+         "heights. Without the error map the mesh shows how exactly its heights are known."));
+  next_words_ = addNote(column, "align_next_words");
+  for (QCheckBox* box : {lines_, map_, next_})
     connect(box, &QCheckBox::toggled, this, &AlignPanel::shownChanged);
   all->addWidget(error);
   error_ = error;
@@ -93,6 +98,7 @@ AlignPanel::AlignPanel(QWidget* parent) : QWidget(parent) {
   setReady(false, false);
   setPicking({});
   setFit({});
+  setNext({});
   setStretch(0);
 }
 

@@ -25,8 +25,10 @@ class AlignPanel : public QWidget {
   void setResiduals(const Residuals& residuals);
   bool linesShown() const { return lines_->isChecked(); }
   bool mapShown() const { return map_->isChecked(); }
+  bool nextShown() const { return next_->isChecked(); }
   void setStretch(double times); // Factor of the lines' length; 0: no lines.
   void setFit(const QString& words) { say(fit_words_, words); }
+  void setNext(const QString& words) { say(next_words_, words); } // of the next stroke
   void setPicking(const QString& words); // The next place to click; empty: picking is over.
 
  signals:
@@ -43,11 +45,11 @@ class AlignPanel : public QWidget {
  private:
   PoseValues values() const;
 
-  QLabel *path_, *off_, *fit_words_, *hint_;
+  QLabel *path_, *off_, *fit_words_, *next_words_, *hint_;
   std::array<ValueRow*, 6> rows_;
   QPushButton *pick_, *fit_, *begin_, *keep_, *store_;
   QComboBox* scans_;
-  QCheckBox *lines_, *map_;
+  QCheckBox *lines_, *map_, *next_;
   QWidget *place_, *error_;
 };
 
