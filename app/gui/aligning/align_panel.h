@@ -28,7 +28,8 @@ class AlignPanel : public QWidget {
   bool nextShown() const { return next_->isChecked(); }
   void setStretch(double times); // Factor of the lines' length; 0: no lines.
   void setFit(const QString& words) { say(fit_words_, words); }
-  void setNext(const QString& words) { say(next_words_, words); } // of the next stroke
+  // Words about the next stroke; empty: none.
+  void setNext(const QString& words) { say(next_words_, words); }
   void setPicking(const QString& words); // The next place to click; empty: picking is over.
 
  signals:

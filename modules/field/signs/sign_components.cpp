@@ -6,6 +6,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include "geometry/mesh/holes.h"
+#include "geometry/mesh/vertex_weld.h"
+
 namespace patina::signs {
 namespace {
 
@@ -236,64 +239,14 @@ void linkUnstored(const FieldBuilder& builder, Components& components) {
       });
 }
 
-namespace {
-
-// Returns the lowest index of the vertices at each vertex's position.
-std::vector<std::int32_t> welded(const std::vector<Vec3>& positions) {
-  std::vector<std::int32_t> order(positions.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto at = [&](std::int32_t v) -> const Vec3& {
-    return positions[static_cast<std::size_t>(v)];
-  };
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    for (int k = 0; k < 3; ++k)
-      if (at(a)[k] != at(b)[k]) return at(a)[k] < at(b)[k];
-    return a < b;
-  });
-  std::vector<std::int32_t> first(positions.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && at(order[i]) == at(order[i - 1]);
-    first[static_cast<std::size_t>(order[i])] =
-        same ? first[static_cast<std::size_t>(order[i - 1])] : order[i];
-  }
-  return first;
-}
-
-} // namespace
-
 bool isClosed(const TriangleMesh& mesh, const OpenParts& open) {
   for (const PartSides& part : open.decided)
     if (part.sides == OpenSides::closed && part.rim_edges > 0) return false;
-  const std::vector<std::int32_t> vertex = welded(mesh.positions);
-  std::vector<Triangle> faces;
-  faces.reserve(mesh.triangles.size());
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    if (open.any() && open.open[f]) continue;
-    const Triangle& t = mesh.triangles[f];
-    Triangle face;
-    for (std::size_t k = 0; k < 3; ++k) face[k] = vertex[static_cast<std::size_t>(t[k])];
-    std::sort(face.begin(), face.end());
-    faces.push_back(face);
-  }
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  std::vector<std::uint64_t> edges;
-  edges.reserve(3 * faces.size());
-  for (const Triangle& face : faces) {
-    const auto a = static_cast<std::uint64_t>(face[0]), b = static_cast<std::uint64_t>(face[1]),
-               c = static_cast<std::uint64_t>(face[2]);
-    if (a != b) edges.push_back(a << 32 | b);
-    if (b != c) edges.push_back(b << 32 | c);
-    if (a != c) edges.push_back(a << 32 | c);
-  }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t j = i;
-    while (j < edges.size() && edges[j] == edges[i]) ++j;
-    if (j - i == 1) return false;
-    i = j;
-  }
-  return true;
+  const std::vector<Triangle> welded = weldedTriangles(mesh);
+  TriangleMesh closed{mesh.positions, {}, {}};
+  for (std::size_t f = 0; f < welded.size(); ++f)
+    if (!open.any() || !open.open[f]) closed.triangles.push_back(welded[f]);
+  return connectedParts(closed, 0).rims.empty();
 }
 
 std::vector<std::int8_t> cutLeaks(const Components& components,
