@@ -109,8 +109,8 @@ SimilarityFit sizedFit(const SurfaceTarget& target, const std::vector<Vec3>& poi
 
 // Returns lines for the user, none if all is well. If the path was registered (`found`), the scale
 // is tested: a line is given if it differs from one by more than 3.5 deviations and half a
-// percent. Otherwise other units are tried, and for an ambiguous or failed registration a mirror
-// image, with at most 400 points. `fitting`: the options of `found`.
+// percent. For a failed registration other units are tried, and for one that failed, is ambiguous or
+// misfits a mirror image, with at most 400 points. `fitting`: the options of `found`.
 std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vector<Vec3>& points,
                                     const RegistrationOptions& fitting, const Registration& found,
                                     Progress& progress) {
@@ -130,8 +130,9 @@ std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vect
                      "): a print, its file or the camera's calibration "
                      "may have another size");
   };
-  if (says && found.converged) sayScale();
-  if (!isUnreliable(found) || !doubts.empty()) return doubts;
+  // A mirror image of a nearly symmetric mesh, too, fits but for what looks like roughness.
+  const bool misfits = found.roughness > minNoise(points, fitting.noise);
+  if (!isUnreliable(found) && !says && !misfits) return doubts;
 
   // Half the mesh's diagonal, and the largest distance from the path's middle.
   const double half = target.extent() / 2;

@@ -208,6 +208,23 @@ TEST(ScanDoubts, NameAWrongUnitAMirrorAndAWrongSize) {
   }
 }
 
+// The other side of a nearly symmetric body looks like a rough one of the same.
+TEST(ScanDoubts, NameTheMirrorOfANearlySymmetricBody) {
+  TriangleMesh body = icosphere(1, 40);
+  for (Vec3& p : body.positions) {
+    const double even = 0.006 * p.x() * p.y() * p.y() + 0.005 * std::sin(3 * p.z() + p.x()) +
+                        0.003 * std::cos(5 * p.y()) + 0.004 * p.x();
+    p *= 0.035 + even + 0.5e-3 * std::sin(4 * p.y() + 2 * p.x() + p.z());
+  }
+  const SurfaceTarget target(body, 0, true);
+  for (const bool mirrored : {true, false}) {
+    const RegisteredScans found = registered(target, onAnotherSize(body, 1, mirrored, 1));
+    EXPECT_TRUE(found.registration.converged);
+    const std::string said = found.doubts.empty() ? "" : found.doubts.front();
+    EXPECT_EQ(said.find("is mirrored") != std::string::npos, mirrored) << said;
+  }
+}
+
 std::vector<Vec3> positionsOf(const Drawn& drawn) {
   std::vector<Vec3> points;
   for (const PathSample& sample : drawn.paths.front()) points.push_back(sample.position);
