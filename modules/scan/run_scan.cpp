@@ -69,7 +69,7 @@ class Runner {
       if (one.from <= ScanStep::track) track(one);
     if (options_.to >= ScanStep::filter)
       for (Run& one : runs_)
-        if (one.from <= ScanStep::filter) filter(one, true);
+        if (one.from <= ScanStep::filter && !filter(one, true)) return std::move(report_);
     if (options_.to >= ScanStep::register_paths && registers() && !registerAll())
       return std::move(report_);
     if (options_.to >= ScanStep::texture) fitAndLay();
@@ -167,7 +167,8 @@ class Runner {
              .set("reprojection_rms_px", found.rms));
   }
 
-  void filter(Run& one, bool writes) {
+  // Returns false if the path is wrong.
+  bool filter(Run& one, bool writes) {
     const auto begin = Clock::now();
     if (one.files.poses.empty()) throw FileError(one.folder.string(), 0, "has no poses.tum");
     try {
@@ -176,13 +177,14 @@ class Runner {
     } catch (const Error& error) {
       throw FileError(one.folder.string(), 0, error.what());
     }
-    if (!writes) return;
+    if (!writes) return true;
     warn(one.filtered->warnings, one.folder.string() + ": ");
     writePath(one.folder / "path.csv", one.filtered->path);
     note(ScanStep::filter, one.folder, begin, formatCount(one.filtered->path.size()) + " samples",
          Json::object()
              .set("samples", one.filtered->path.size())
              .set("nis_mean", one.filtered->track.nis_mean));
+    return !one.filtered->is_wrong;
   }
 
   // Returns false if the pose is uncertain.

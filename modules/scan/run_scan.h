@@ -44,7 +44,8 @@ struct RunScanReport {
   std::vector<Step> steps; // steps that ran
   std::vector<std::string> warnings;
   std::optional<RegisteredScans> registered; // if that step ran
-  // All steps ran. An uncertain pose stops before the texture is mapped.
+  // All steps ran. A wrong path stops before it is registered, and an uncertain pose before the
+  // texture is mapped.
   bool done = false;
 };
 

@@ -92,8 +92,8 @@ TEST(Compliance, DeviationHoldsUnderCorrelatedErrors) {
   EXPECT_NEAR(found.stated / found.deviation, 1, 0.1);
 }
 
-// Each press has an error of its own that grows with the force, like that of a tilted path. Two of
-// three intervals hold the truth even for few presses.
+// Each press has an error of its own that grows with the force, like that of a tilted path. Two
+// deviations hold the truth in 95 % even for few presses.
 TEST(Compliance, DeviationIsWiderForFewPresses) {
   constexpr double kStiffness = 800, kOwn = 0.08; // deviation of a press's slope, relative
   for (const int count : {2, 3, 5, 12}) {
@@ -113,12 +113,12 @@ TEST(Compliance, DeviationIsWiderForFewPresses) {
       const auto estimate = estimateCompliance(samples, kForceSigma, true);
       ASSERT_TRUE(estimate);
       ASSERT_EQ(estimate->loadings, static_cast<std::size_t>(count));
-      held += std::abs(estimate->compliance - 1 / kStiffness) < estimate->compliance_deviation;
+      held += std::abs(estimate->compliance - 1 / kStiffness) < 2 * estimate->compliance_deviation;
       ++all;
     }
-    const double share = static_cast<double>(held) / all; // its own deviation is .012
-    std::printf("%d presses: %.3f of the intervals hold the truth\n", count, share);
-    EXPECT_NEAR(share, 0.683, 0.04) << count;
+    const double share = static_cast<double>(held) / all; // its own deviation is .005
+    std::printf("%d presses: two deviations hold the truth in %.3f\n", count, share);
+    EXPECT_NEAR(share, 0.9545, 0.02) << count;
   }
 }
 

@@ -11,6 +11,7 @@
 #include "acquisition/files/scan_tables.h"
 #include "acquisition/filtering/filtered_scan.h"
 #include "acquisition/simulation/simulated_streams.h"
+#include "core/csv.h"
 #include "support/shared_data.h"
 
 namespace patina {
@@ -26,18 +27,10 @@ struct Recording {
   std::vector<Gap> gaps;
 };
 
-Recording recordingOf(HandGesture kind, std::uint32_t seed, bool bad) {
-  Recording made;
-  made.hand = gesture(kind, seed);
-  SimulatedCamera camera;
-  camera.sigma_angle = 3e-3;
-  made.poses = simulateCamera(made.hand, made.probe, camera, seed);
-  made.samples = simulateProbe(made.hand, made.probe, {}, seed + 100);
-  made.rates = simulateRates(made.hand, made.probe, {}, seed + 200);
-  made.wrong.assign(made.poses.size(), false);
-  if (!bad) return made;
+// Leaves out the poses of six gaps of half a second and puts 3 % of the others aside.
+void spoil(Recording& made, std::uint32_t seed, double begin, double seconds) {
   for (int i = 0; i < 6; ++i) {
-    const double from = 10 * (i + 0.7) / 6.5;
+    const double from = begin + seconds * (i + 0.7) / 6.5;
     made.gaps.push_back({from, from + 0.5});
   }
   std::erase_if(made.poses, [&](const CameraPose& pose) {
@@ -51,6 +44,18 @@ Recording recordingOf(HandGesture kind, std::uint32_t seed, bool bad) {
     made.wrong[i] = random() % 100 < 3;
     if (made.wrong[i]) made.poses[i].position += Vec3(off(random), off(random), off(random));
   }
+}
+
+Recording recordingOf(HandGesture kind, std::uint32_t seed, bool bad) {
+  Recording made;
+  made.hand = gesture(kind, seed);
+  SimulatedCamera camera;
+  camera.sigma_angle = 3e-3;
+  made.poses = simulateCamera(made.hand, made.probe, camera, seed);
+  made.samples = simulateProbe(made.hand, made.probe, {}, seed + 100);
+  made.rates = simulateRates(made.hand, made.probe, {}, seed + 200);
+  made.wrong.assign(made.poses.size(), false);
+  if (bad) spoil(made, seed, 0, 10);
   return made;
 }
 
@@ -139,8 +144,10 @@ TEST(FusedPath, FollowsEveryHandAtLeastAsWellAsTheSimplestModel) {
 }
 
 TEST(FusedPath, StatesItsErrorInGapsBetweenOutliers) {
-  for (const HandGesture kind : kHandGestures) {
-    const Recording made = recordingOf(kind, 1, true);
+  std::vector<std::pair<HandGesture, std::uint32_t>> hands = {{HandGesture::turning, 3}};
+  for (const HandGesture kind : kHandGestures) hands.emplace_back(kind, 1);
+  for (const auto& [kind, seed] : hands) {
+    const Recording made = recordingOf(kind, seed, true);
     const JudgedPath velocity = judged(made, PathModel::velocity, false),
                      fused = judged(made, PathModel::fused, false),
                      turning = judged(made, PathModel::fused, true);
@@ -156,6 +163,21 @@ TEST(FusedPath, StatesItsErrorInGapsBetweenOutliers) {
       EXPECT_LE(each.nees, 3) << nameOf(kind);
       EXPECT_LE(each.rejected, 0.01) << nameOf(kind);
     }
+  }
+}
+
+TEST(FusedPath, CorrectsScaleAndAxesOfAGyroscope) {
+  Eigen::Matrix3d lean;
+  lean << 1.01, 0.01, -0.02, 0.015, 0.99, 0, 0, 0.02, 1;
+  for (const HandGesture kind : {HandGesture::fast, HandGesture::turning}) {
+    Recording made = recordingOf(kind, 1, true);
+    const double exact = judged(made, PathModel::fused, true).rms;
+    for (RateSample& rate : made.rates) rate.rate = lean * rate.rate;
+    const JudgedPath leaning = judged(made, PathModel::fused, true);
+    std::printf("%s: gyroscope exact %.3f mm, leaning %.3f (NEES %.2f)\n", nameOf(kind),
+                1e3 * exact, 1e3 * leaning.rms, leaning.nees);
+    EXPECT_LE(leaning.rms, 1.3 * exact) << nameOf(kind);
+    EXPECT_LE(leaning.nees, 3) << nameOf(kind);
   }
 }
 
@@ -259,14 +281,17 @@ TEST(FusedPath, FollowsARecordedHandThatTaps) {
   const std::vector<CameraPose> poses = readPoses(folder / "poses.tum").values;
   const std::vector<ProbeSample> samples = readProbeStream(folder / "probe.csv").values;
   const std::vector<PathSample> truth = readPath(folder / "truth.csv");
-  const auto errorOf = [&](PathModel model) {
+  const auto errorOf = [&](PathModel model, const std::vector<CameraPose>& seen,
+                           const std::vector<RateSample>& rates = {}) {
     ScanFilter filter;
     filter.model = model;
     filter.touching_only = false;
     filter.gravity = rig.gravity;
     Progress progress;
-    const FilteredScan scan = filterScan(poses, samples, rig.probe, filter, progress);
-    EXPECT_GE(scan.track.used() + poses.size() / 100, poses.size());
+    const FilteredScan scan = filterScan(seen, samples, rig.probe, filter, progress, rates);
+    if (seen.size() == poses.size()) {
+      EXPECT_GE(scan.track.used() + poses.size() / 100, poses.size());
+    }
     double squares = 0, count = 0;
     for (const PathSample& known : truth) {
       const auto after =
@@ -281,7 +306,22 @@ TEST(FusedPath, FollowsARecordedHandThatTaps) {
     }
     return std::sqrt(squares / count);
   };
-  const double velocity = errorOf(PathModel::velocity), fused = errorOf(PathModel::fused);
+  std::vector<RateSample> rates;
+  for (const std::vector<double>& row :
+       readCsv(folder / "gyro.csv", {"t [s]", "wx [rad/s]", "wy [rad/s]", "wz [rad/s]"}).rows)
+    rates.push_back({row[0], Vec3(row[1], row[2], row[3])});
+  const double velocity = errorOf(PathModel::velocity, poses),
+               fused = errorOf(PathModel::fused, poses),
+               turning = errorOf(PathModel::fused, poses, rates);
+  EXPECT_LE(turning, 0.5e-3);
+  for (const std::uint32_t seed : {1, 2, 5}) {
+    Recording bad;
+    bad.poses = poses;
+    spoil(bad, seed, poses.front().t, poses.back().t - poses.front().t);
+    const double bridged = errorOf(PathModel::fused, bad.poses, rates);
+    std::printf("gyroscope %.3f mm, with gaps and outliers %.3f\n", 1e3 * turning, 1e3 * bridged);
+    EXPECT_LE(bridged, 0.8e-3) << seed;
+  }
   std::printf("velocity %.3f mm, fused %.3f mm\n", 1e3 * velocity, 1e3 * fused);
   EXPECT_LE(fused, 0.6e-3);
   EXPECT_LE(fused, 1.05 * velocity);

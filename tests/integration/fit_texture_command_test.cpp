@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/file.h"
+#include "core/numbers.h"
 #include "integration/program.h"
 #include "pictures/picture_file.h"
 #include "support/profilometer_files.h"
@@ -131,6 +132,25 @@ TEST_F(FittedTextures, ComeFromAnAreaOfAProfilometer) {
   writeFileAtomically(file, area.bytes());
   expectOneLineError(run({"fit-texture", file, "-o", out, "--kind", "plane"}),
                      {"leather.x3p", "checksum"});
+}
+
+// Waves of 20 mm are left out, so that the texture has only the variance of those of 2 mm.
+TEST_F(FittedTextures, SayHowMuchOfTheHeightsTheyHave) {
+  constexpr double kLong = 1e-4, kShort = 2e-5; // amplitudes [m]
+  std::string table = "along [m],height [m]\n";
+  for (int i = 0; i <= 1000; ++i) {
+    const double x = 1e-4 * i;
+    table += formatNumber(x) + "," +
+             formatNumber(kLong * std::sin(2 * std::numbers::pi * x / 0.02) +
+                          kShort * std::sin(2 * std::numbers::pi * x / 0.002)) +
+             "\n";
+  }
+  const std::string waves = folder / "waves.csv";
+  writeFileAtomically(waves, table);
+  const Json report = runJson({"fit-texture", waves, "-o", out, "--cutoff", "8mm"});
+  EXPECT_NEAR(report.at("variance_explained").asNumber(),
+              kShort * kShort / (kLong * kLong + kShort * kShort), 2e-3);
+  EXPECT_NEAR(report.at("left_out").asNumber(), kLong / std::numbers::sqrt2, 1e-6);
 }
 
 TEST_F(FittedTextures, ComeFromAScansHeights) {

@@ -391,7 +391,7 @@ int runFilter(FilterOptions options, Console& console) {
   warnOf(scan.without_pose, options.input, in.poses, nullptr, "a pose", console);
   warnOf(scan.without_sample, options.probe, in.samples,
          scan.clock && scan.clock->is_significant ? &*scan.clock : nullptr, "a sample", console);
-  return console.report(report);
+  return console.report(report, scan.is_wrong ? kNotSolved : kDone);
 }
 
 } // namespace
@@ -418,8 +418,9 @@ Command filterCommand() {
           "mesh, and "
           "the arc length is along the mesh.\n"
           "With a probe the path has only samples in contact, by their force. Gaps are bridged, "
-          "reported, and sigma grows in them. Where there is a truth, the error against it is "
-          "reported.",
+          "reported, and sigma grows in them. Where streams or poses contradict one another, the "
+          "path is written, a warning says so and the exit code is 1. Where there is a truth, the "
+          "error against it is reported.",
       .examples = {"patina filter scan -o path.csv",
                    "patina filter poses.tum --probe probe.csv -o path.csv --json"},
       .keys = kFilterKeys,

@@ -43,9 +43,12 @@ const Keys kFitKeys = {
     {"rank", "", "rank", "products of a line along x and one along y", Shown::if_any},
     {"lacking", "", "lacking", "of the plane's rms, what the products lack of it", Shown::if_any},
     {"rms", "m", "rms",
-     "of the profile's heights from their least-squares line, a picture's from their mean"},
-    {"residual", "m", "residual", "rms of what the texture lacks of them"},
-    {"variance_explained", "", "explained", "of the profile's variance"},
+     "of the profile's heights from their least-squares line; of a picture's, once blended, from "
+     "their mean"},
+    {"residual", "m", "residual",
+     "rms of what the texture lacks of them, beside what --cutoff leaves out"},
+    {"variance_explained", "", "explained",
+     "part of the heights' variance that the texture has; --cutoff leaves out its own"},
     {"left_out", "m", "left out", "rms of what --cutoff leaves out", Shown::if_any},
     {"noise", "1/m", "noise", "of a harmonic over the square of its wavelength: the median of all",
      Shown::if_any},
@@ -173,7 +176,7 @@ int runFitPlane(const FitTextureOptions& options, Console& console) {
       .set("harmonics", static_cast<std::size_t>(harmonics(texture)))
       .set("length", period(texture))
       .set("omega", texture.omega)
-      .set("samples", static_cast<std::size_t>(picture.width));
+      .set("samples", fitted.samples);
   if (fitted.rank > 0)
     report.set("rank", static_cast<std::size_t>(fitted.rank)).set("lacking", fitted.relative_error);
   report.set("rms", fitted.rms)
@@ -230,6 +233,8 @@ int runFitTexture(FitTextureOptions options, Console& console) {
     if (std::hypot(line.a[j], line.b[j]) > std::hypot(line.a[strongest], line.b[strongest]))
       strongest = j;
   const double finest = fitted.length / harmonics;
+  const double lacking = std::hypot(fitted.residual, fitted.removed_rms);
+  const double explained = std::max(0., 1 - lacking * lacking / fitted.variance);
   Report report(kFitKeys);
   report.set("kind", kKinds[static_cast<std::size_t>(options.kind)])
       .set("harmonics", static_cast<std::size_t>(harmonics))
@@ -238,7 +243,7 @@ int runFitTexture(FitTextureOptions options, Console& console) {
       .set("samples", fitted.samples)
       .set("rms", fitted.rms)
       .set("residual", fitted.residual)
-      .set("variance_explained", 1 - fitted.residual * fitted.residual / fitted.variance)
+      .set("variance_explained", explained)
       .set("left_out", fitted.removed_rms)
       .set("noise", fitted.noise,
            formatLength(fitted.noise * 1e-6) + " at a wavelength of 1 mm, growing as its square")

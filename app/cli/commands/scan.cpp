@@ -17,7 +17,7 @@ const Keys kScanKeys = {
      "that ran; what each found is in the folder's scan.json, too",
      Shown::never,
      {{"step", "", ""}, {"folder", "", ""}, {"found", "", ""}, {"seconds", "s", ""}}},
-    {"done", "", "done", "false: the pose on the mesh is uncertain, and no texture was mapped"},
+    {"done", "", "done", "false: a path is wrong or its pose uncertain, and no texture was mapped"},
     {"workspace", "", "workspace", "with the mesh and its textures", Shown::if_any},
     {"textured", "", "textured", "the mesh as an OBJ with haptic coordinates", Shown::if_any}};
 
@@ -51,7 +51,7 @@ int runScanCommand(const RunScanOptions& options, Console& console) {
   if (found.done && options.to == ScanStep::texture)
     report.set("workspace", options.workspace.string())
         .set("textured", (options.folders.front() / "textured.obj").string());
-  if (!found.done)
+  if (!found.done && found.registered)
     console.warn(options.mesh.string() +
                  ": the pose of the scans is uncertain, so no texture was mapped");
   return console.report(report, found.done ? kDone : kNotSolved);

@@ -74,13 +74,16 @@ double MeasurementRow::dot(const State::Vector& x) const {
   return sum;
 }
 
+void predict(State::Vector& x, double dt) {
+  for (const int at : {State::kTip, State::kAngle}) {
+    x.segment<3>(at) += dt * x.segment<3>(at + 3) + 0.5 * dt * dt * x.segment<3>(at + 6);
+    x.segment<3>(at + 3) += dt * x.segment<3>(at + 6);
+  }
+}
+
 void predict(State& state, double dt, const Eigen::Matrix3d& jerk,
              const Eigen::Matrix3d& angular_jerk) {
-  for (const int at : {State::kTip, State::kAngle}) {
-    state.x.segment<3>(at) +=
-        dt * state.x.segment<3>(at + 3) + 0.5 * dt * dt * state.x.segment<3>(at + 6);
-    state.x.segment<3>(at + 3) += dt * state.x.segment<3>(at + 6);
-  }
+  predict(state.x, dt);
   stepColumns(state.P, dt);
   stepRows(state.P, dt);
   addNoise(state.P, State::kTip, dt, jerk);

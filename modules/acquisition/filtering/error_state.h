@@ -50,6 +50,9 @@ struct ProcessedRow {
 void predict(ErrorState& state, double dt, const Eigen::Matrix3d& jerk,
              const Eigen::Matrix3d& angular_jerk);
 
+// Predicts the mean alone.
+void predict(ErrorState::Vector& x, double dt);
+
 // Updates the state; `residual` is the measurement minus its prediction.
 ProcessedRow update(ErrorState& state, const MeasurementRow& row, double residual, double variance);
 

@@ -70,10 +70,12 @@ std::string rounded(double nis) {
 
 void addDoubts(FilteredScan& scan, std::size_t poses) {
   const double rejected = static_cast<double>(poses - scan.track.used());
-  if (rejected > kMaxOutlierFraction * static_cast<double>(poses))
+  const bool contradict = rejected > kMaxOutlierFraction * static_cast<double>(poses);
+  if (contradict)
     scan.warnings.push_back(formatCount(poses - scan.track.used()) + " of " + formatCount(poses) +
                             " poses were rejected, and those that are left may be the wrong ones");
   const double axes = *std::max_element(scan.axis_nis.begin(), scan.axis_nis.end());
+  scan.is_wrong = contradict || axes > kMaxNis || scan.pose_nis > kMaxNis;
   if (axes > kMaxNis || scan.pose_nis > kMaxNis)
     scan.warnings.push_back(
         "accelerometers and poses contradict one another (NIS " + rounded(axes) + " and " +

@@ -34,6 +34,7 @@ struct FilteredScan {
   std::array<double, 4> axis_nis{}; // see FusedPath, also for pose_nis; 0 if not used
   double pose_nis = 0;
   std::vector<std::string> warnings; // reasons why the result may be wrong
+  bool is_wrong = false;             // streams or poses contradict one another
 };
 
 // `samples` may be empty; the path then is at the poses' times, has no force and is not cut. Throws

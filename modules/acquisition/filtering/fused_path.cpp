@@ -54,8 +54,19 @@ FusedPath fuseWith(CameraTrack track, const std::vector<CameraPose>& poses,
   fusion.weighBothWays();
   fusion.refine();
   fusion.forgetWeights();
-  if (!rates.empty()) fusion.chooseVariance(&FusionScales::rate, {1, 10, 100, 1000});
-  fusion.chooseVariance(&FusionScales::acceleration, {1, 4, 16, 64, 256});
+  const auto chooseVariances = [&] {
+    if (!rates.empty()) fusion.chooseVariance(&FusionScales::rate, {1, 10, 100, 1000});
+    fusion.chooseVariance(&FusionScales::acceleration, {1, 4, 16, 64, 256});
+  };
+  chooseVariances();
+  if (!rates.empty()) {
+    fusion.weighBothWays();
+    fusion.refine();
+    fusion.fitGyroscope();
+    fusion.refine();
+    fusion.forgetWeights();
+    chooseVariances();
+  }
   fusion.chooseNoise();
   fusion.weighBothWays();
   for (int round = 0; round < kOutlierRounds && fusion.refine(); ++round) continue;

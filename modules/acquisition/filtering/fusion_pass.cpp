@@ -208,6 +208,9 @@ void FusionPass::advance(State& state, std::size_t k, FusionStep& step) const {
     predict(state, step.dt, R * jerk.asDiagonal() * R.transpose(),
             turning * Eigen::Matrix3d::Identity());
     followReference(state, events_[k - 1].reference, reference, step.dt);
+    if (event.reading >= 0)
+      state.P.diagonal().segment<3>(State::kVelocity).array() +=
+          readings_[static_cast<std::size_t>(event.reading)].velocity_variance;
   }
   if (event.reading >= 0)
     useReading(state, k, step);

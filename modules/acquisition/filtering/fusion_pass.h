@@ -24,9 +24,10 @@ struct InertialReading {
   Vec3 rate = Vec3::Zero();             // [rad/s]
   double rate_variance = 0;
   bool has_acceleration = false, has_rate = false;
-  Vec3 jerk = Vec3::Zero(); // process noise density in the probe's frame [m^2/s^5]
-  double force = 0;         // [N]
-  bool is_sample = false;   // the path has a sample at this time
+  Vec3 jerk = Vec3::Zero();     // process noise density in the probe's frame [m^2/s^5]
+  double velocity_variance = 0; // process noise of the velocity, by a peak of the acceleration
+  double force = 0;             // [N]
+  bool is_sample = false;       // the path has a sample at this time
 };
 
 // Motion about which a pass is linearised: the camera's track, or nodes of an earlier pass.
@@ -130,9 +131,8 @@ TipMotion smoothedMotion(const FusionEvent& event, const FusionStep& step,
 
 // Verdict of all other measurements on a pose.
 struct PoseScore {
-  double weight =
-      1;          // Student's t with four degrees of freedom (Piche, Sarkka & Hartikainen 2012)
-  double nis = 0; // squared residual over its variance without this pose, 6 degrees of freedom
+  double weight = 1; // Student's t with four degrees of freedom (Piche, Sarkka & Hartikainen 2012)
+  double nis = 0;    // squared residual over its variance without this pose, 6 degrees of freedom
   double volume = 0; // logarithm of the determinant of that variance over the pose's own
 };
 PoseScore scoreOf(const CameraPose& pose, double variance_factor, const FusionEvent& event,

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/percentiles.h"
+
 namespace patina {
 namespace {
 
 constexpr double kWindow = 8e-3;         // readings that the coarse passes take together [s]
 constexpr std::size_t kNoiseWindow = 64; // samples over which the probe's process noise is measured
 constexpr double kLeastNoise = 0.01;     // no accelerometer has less [m/s^2]
+constexpr double kRateDelay = 0.5e-3;    // deviation of the delay of a gyroscope's readings [s]
 
 std::vector<const ProbeSample*> usable(const std::vector<ProbeSample>& samples) {
   std::vector<const ProbeSample*> kept;
@@ -47,6 +50,48 @@ std::vector<Vec3> processNoise(const std::vector<const ProbeSample*>& samples,
   return jerks;
 }
 
+// Returns the rms over the axes of the angular acceleration at a reading [rad/s^2]; 0 in gaps.
+double turnRateChange(const std::vector<RateSample>& rates, std::size_t i) {
+  constexpr double kLongest = 0.05; // [s]
+  const RateSample &before = rates[i - std::min<std::size_t>(i, 1)],
+                   &after = rates[std::min(i + 1, rates.size() - 1)];
+  const double seconds = after.t - before.t, change = (after.rate - before.rate).norm();
+  return seconds > 0 && seconds < kLongest && std::isfinite(change)
+             ? change / seconds / std::sqrt(3.)
+             : 0;
+}
+
+// Returns the variance of the velocity by peaks of the acceleration that are as narrow as the
+// samples are apart: an impact, which is sampled too coarsely and may leave the sensor's range.
+// Textures, whose peaks resemble one another, have none.
+std::vector<double> peakVariances(const std::vector<const ProbeSample*>& samples,
+                                  const ProbeModel& probe) {
+  constexpr std::size_t kAround = 128; // samples on each side that show the usual change
+  constexpr double kPeak = 10;         // smallest ratio of a peak to the usual change
+  constexpr double kUnknown = 0.1;     // part of a peak's integral that is unknown
+  std::vector<double> changes(samples.size(), 0), variances(samples.size(), 0);
+  for (std::size_t i = 1; i + 1 < samples.size(); ++i)
+    for (std::size_t k = 0; k < probe.axes.size(); ++k)
+      changes[i] = std::max(changes[i], std::abs(samples[i]->acceleration[k] -
+                                                 0.5 * (samples[i - 1]->acceleration[k] +
+                                                        samples[i + 1]->acceleration[k])));
+  for (std::size_t begin = 0; begin < samples.size(); begin += kAround) {
+    const std::size_t from = begin - std::min(begin, kAround),
+                      to = std::min(begin + 2 * kAround, samples.size());
+    std::vector<double> around(changes.begin() + static_cast<std::ptrdiff_t>(from),
+                               changes.begin() + static_cast<std::ptrdiff_t>(to));
+    const double usual = percentiles(std::move(around)).p50;
+    for (std::size_t i = std::max<std::size_t>(begin, 1);
+         i < std::min(begin + kAround, samples.size() - 1); ++i)
+      if (changes[i] > kPeak * usual) {
+        const double dt =
+            std::min(samples[i]->t - samples[i - 1]->t, samples[i + 1]->t - samples[i]->t);
+        variances[i] = std::pow(kUnknown * dt * changes[i], 2);
+      }
+  }
+  return variances;
+}
+
 } // namespace
 
 std::vector<InertialReading> inertialReadings(const std::vector<ProbeSample>& all,
@@ -54,6 +99,7 @@ std::vector<InertialReading> inertialReadings(const std::vector<ProbeSample>& al
                                               const ProbeModel& probe) {
   const std::vector<const ProbeSample*> samples = usable(all);
   const std::vector<Vec3> jerks = processNoise(samples, probe);
+  const std::vector<double> peaks = peakVariances(samples, probe);
   std::vector<InertialReading> readings;
   readings.reserve(std::max(samples.size(), rates.size()));
   std::size_t next = 0;
@@ -68,7 +114,10 @@ std::vector<InertialReading> inertialReadings(const std::vector<ProbeSample>& al
     }
     InertialReading& reading = readings.back();
     reading.rate = rate.rate;
-    reading.rate_variance = probe.rate_noise * probe.rate_noise;
+    reading.rate_variance =
+        probe.rate_noise * probe.rate_noise +
+        std::pow(kRateDelay * turnRateChange(rates, static_cast<std::size_t>(&rate - rates.data())),
+                 2);
     reading.has_rate = true;
   };
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -80,6 +129,7 @@ std::vector<InertialReading> inertialReadings(const std::vector<ProbeSample>& al
     reading.acceleration_variance =
         std::max(probe.accelerationVariance(), kLeastNoise * kLeastNoise);
     reading.jerk = jerks[i];
+    reading.velocity_variance = peaks[i];
     reading.force = sample.force;
     reading.has_acceleration = reading.is_sample = true;
     readings.push_back(reading);
@@ -99,6 +149,7 @@ std::vector<InertialReading> meansOverWindows(const std::vector<InertialReading>
       const InertialReading& reading = readings[end];
       mean.t += reading.t - readings[begin].t;
       mean.jerk += reading.jerk;
+      mean.velocity_variance += reading.velocity_variance;
       count += 1;
       if (reading.has_acceleration) {
         for (std::size_t i = 0; i < 4; ++i) mean.acceleration[i] += reading.acceleration[i];

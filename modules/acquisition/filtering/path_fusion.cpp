@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "acquisition/filtering/fusion_readings.h"
+#include "core/decompose.h"
 
 namespace patina {
 namespace {
@@ -64,6 +65,16 @@ std::vector<FusionEvent> reversed(const std::vector<FusionEvent>& events) {
   return backwards;
 }
 
+// Raises the deviations of a motion by its distance from the reference: where that is large, the
+// linear model was wrong, and the deviations are too small.
+void addLinearError(TipMotion& motion, const TipMotion& reference) {
+  motion.sigma =
+      std::hypot(motion.sigma, (motion.position - reference.position).norm() / std::sqrt(3.));
+  motion.sigma_angle =
+      std::hypot(motion.sigma_angle,
+                 motion.orientation.angularDistance(reference.orientation) / std::sqrt(3.));
+}
+
 bool hasRate(const std::vector<InertialReading>& readings, const FusionEvent& event) {
   return event.reading >= 0 && readings[static_cast<std::size_t>(event.reading)].has_rate;
 }
@@ -119,6 +130,7 @@ bool PathFusion::refine() {
       [&](std::size_t k, const FusionStep& step, const BrysonFrazierState& adjoint) {
         times[k] = events[k].t;
         nodes[k] = smoothedMotion(events[k], step, adjoint);
+        if (events[k].reference.gap) addLinearError(nodes[k], events[k].reference);
         if (events[k].pose < 0) return;
         const auto i = static_cast<std::size_t>(events[k].pose);
         scores_[i] = scoreOf(input_.poses[i], step.pose_variance, events[k], step, adjoint,
@@ -144,6 +156,55 @@ void PathFusion::chooseVariance(double FusionScales::*factor,
     best = trial;
   }
   scales_ = best;
+}
+
+// The filter is linear, so that the sensitivity of its state to the errors runs along with it
+// (separate bias: Friedland 1969).
+void PathFusion::fitGyroscope() {
+  constexpr double kPrior = 0.02; // deviation of a scale factor and of an axis's lean
+  using Nine = Eigen::Matrix<double, 9, 1>;
+  Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Identity() / (kPrior * kPrior);
+  Nine right = Nine::Zero();
+  Eigen::Matrix<double, ErrorState::kSize, 9> sensitivity;
+  const std::vector<FusionEvent> events =
+      fusionEvents(windows_, input_, starts_, reference_, noise_);
+  FusionPass(events, windows_, input_, scales_)
+      .run(
+          [&](std::size_t k, const FusionStep& step) {
+            if (k == events.size()) return;
+            if (k == 0) sensitivity.setZero();
+            if (events[k].is_segment_start)
+              sensitivity.topRows<ErrorState::kBias>().setZero();
+            else
+              for (int column = 0; column < 9; ++column) {
+                ErrorState::Vector moved = sensitivity.col(column);
+                predict(moved, step.dt);
+                sensitivity.col(column) = moved;
+              }
+            const std::ptrdiff_t reading = events[k].reading;
+            const bool has_rate = hasRate(windows_, events[k]);
+            for (std::size_t i = 0; i < step.count; ++i) {
+              const ProcessedRow& used = step.used[i];
+              Nine change = Nine::Zero(); // change of the innovation by each element
+              if (has_rate && i < 3)
+                change.segment<3>(3 * static_cast<int>(i)) =
+                    windows_[static_cast<std::size_t>(reading)].rate;
+              for (std::size_t j = 0; j < static_cast<std::size_t>(used.row.count); ++j)
+                change -= used.row.value[j] * sensitivity.row(used.row.index[j]).transpose();
+              sensitivity += used.gain * change.transpose();
+              if (reading >= 0)
+                continue; // their errors in an impact would pass for the gyroscope's
+              normal += change * change.transpose() / used.variance;
+              right -= used.residual / used.variance * change;
+            }
+          },
+          nullptr, progress_);
+  const Nine errors = SymmetricSolver(normal).solve(right);
+  const Eigen::Matrix3d correction =
+      Eigen::Matrix3d::Identity() +
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(errors.data());
+  rate_correction_ = correction * rate_correction_;
+  for (InertialReading& window : windows_) window.rate = correction * window.rate;
 }
 
 void PathFusion::chooseNoise() {
@@ -249,7 +310,8 @@ std::vector<ClockInnovation> PathFusion::clockInnovations(double middle) {
   return innovations;
 }
 
-void PathFusion::writeTo(FusedPath& fused, const std::vector<InertialReading>& readings) {
+void PathFusion::writeTo(FusedPath& fused, std::vector<InertialReading> readings) {
+  for (InertialReading& reading : readings) reading.rate = rate_correction_ * reading.rate;
   const std::vector<FusionEvent> events =
       fusionEvents(readings, input_, starts_, reference_, noise_);
   const FusionPass pass(events, readings, input_, scales_);

@@ -33,6 +33,8 @@ class PathFusion {
   void forgetWeights() { weights_ = first_weights_; }
   // Chooses the factor of a sensor's variance by the likelihood of the poses.
   void chooseVariance(double FusionScales::*factor, std::initializer_list<double> factors);
+  // Fits the gyroscope's scale factors and axes to the poses and corrects its rates.
+  void fitGyroscope();
   // Chooses the process noise of each few poses by their likelihood: a hand that rests needs less
   // than one that taps. An interval gets the largest noise of its neighbours, too.
   void chooseNoise();
@@ -46,7 +48,7 @@ class PathFusion {
   // [s].
   std::vector<ClockInnovation> clockInnovations(double middle);
   // Smooths all readings; writes path, biases and innovations.
-  void writeTo(FusedPath& fused, const std::vector<InertialReading>& readings);
+  void writeTo(FusedPath& fused, std::vector<InertialReading> readings);
 
  private:
   void writeInnovations(FusedPath& fused, const std::vector<InertialReading>& readings);
@@ -58,6 +60,7 @@ class PathFusion {
 
   const CameraTrack& track_;
   std::vector<InertialReading> windows_;
+  Eigen::Matrix3d rate_correction_ = Eigen::Matrix3d::Identity(); // true rate over the reading's
   std::vector<double> starts_;
   ReferenceMotion reference_;
   std::vector<double> weights_, first_weights_;

@@ -60,12 +60,16 @@ std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double 
   return loadings;
 }
 
-// Returns the quantile of Student's t at the probability erf(1/sqrt 2) within +-t, expanded about
-// infinitely many degrees of freedom; few values need a wider interval.
+// Returns half the quantile of Student's t within +- which lies the probability of two normal
+// deviations, expanded about infinitely many degrees of freedom (Cornish & Fisher 1938); few
+// values need a wider interval.
 double studentQuantile(double freedom) {
   const double v = 1 / freedom;
-  return 1 + v * (0.5 + v * (0.25 + 0.0625 * v));
+  return 1 + v * (1.25 + v * (1.53125 + v * (1.4297 + v * 0.922)));
 }
+
+// The variance that a path states is worth as many presses as this.
+constexpr double kStatedFreedom = 4;
 
 struct Moments {
   double forces = 0, mixed = 0, displacements = 0, freedom = 0;
@@ -83,6 +87,7 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
   Moments m;
   std::vector<double> f, x; // deviations from the mean of their loading
   std::vector<bool> first;
+  double stated = 0; // variance of the sum of the influences by the samples' own `sigma`
   for (const Loading& loading : loadings) {
     const double n = static_cast<double>(loading.end - loading.begin);
     double mean_f = 0, mean_x = 0;
@@ -99,6 +104,15 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
       m.displacements += x.back() * x.back();
     }
     m.freedom += n - 1;
+    double squares_of_sigma = 0, forces = 0, lowest = 0, highest = 0;
+    for (std::size_t i = loading.begin; i < loading.end; ++i) {
+      const double force = samples[i].force - mean_f;
+      squares_of_sigma += samples[i].sigma * samples[i].sigma / n;
+      forces += force * force;
+      lowest = std::min(lowest, force);
+      highest = std::max(highest, force);
+    }
+    stated += 2 * squares_of_sigma * std::pow(forces / (highest - lowest), 2);
   }
   const double force_variance = force_sigma * force_sigma;
   const double true_forces = m.forces - m.freedom * force_variance;
@@ -127,23 +141,21 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
       std::sqrt(samples_per_independent * residual_variance / true_forces +
                 m.freedom * force_variance * (residual_variance + C * C * force_variance) /
                     (true_forces * true_forces));
+  // The scatter of few presses is averaged with what the path states of them.
   const double presses = static_cast<double>(influences.size());
-  if (correlated_within_press && presses == 1) {
-    const Loading& press = loadings[0];
-    double squares_of_sigma = 0;
-    for (std::size_t i = press.begin; i < press.end; ++i)
-      squares_of_sigma += samples[i].sigma * samples[i].sigma / n;
-    const auto [least, most] = std::minmax_element(f.begin(), f.end());
-    estimate.compliance_deviation =
-        std::max(estimate.compliance_deviation, std::sqrt(2 * squares_of_sigma) / (*most - *least));
-  }
+  double variance = 0, freedom = 0;
   if (correlated_within_press && presses > 1) {
-    double sum = 0;
-    for (const double pull : influences) sum += pull * pull;
-    estimate.compliance_deviation = std::max(
-        estimate.compliance_deviation,
-        studentQuantile(presses - 1) * std::sqrt(sum * presses / (presses - 1)) / true_forces);
+    for (const double pull : influences) variance += pull * pull * presses;
+    freedom = presses - 1;
   }
+  if (correlated_within_press && stated > 0) {
+    variance += kStatedFreedom * stated;
+    freedom += kStatedFreedom;
+  }
+  if (freedom > 0)
+    estimate.compliance_deviation =
+        std::max(estimate.compliance_deviation,
+                 studentQuantile(freedom) * std::sqrt(variance / freedom) / true_forces);
   // The mean of 1 / C is too large by the square of C's relative deviation.
   const double relative = estimate.compliance_deviation / C;
   estimate.stiffness = 1 / (C * (1 + relative * relative));

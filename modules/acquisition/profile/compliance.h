@@ -27,9 +27,10 @@ struct ComplianceEstimate {
 // and the scatter of the displacement. Regression of force on displacement would be biased by the
 // displacement's noise, by 42 % at 3000 N/m with 0.3 mm.
 // The deviation accounts for the autocorrelation of the residuals. With `correlated_within_press`
-// it is at least the scatter between presses, widened by Student's t for few presses; a single
-// press uses the samples' own `sigma`. Pauses of more than 0.05 s separate presses. Returns nullopt
-// without a loading of at least `min_force_rise` [N].
+// it is at least the scatter between presses, averaged with what the samples' own `sigma` lets
+// expect, and so wide that two deviations hold the truth in 95 % also of few presses. Pauses of
+// more than 0.05 s separate presses. Returns nullopt without a loading of at least `min_force_rise`
+// [N].
 std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
                                                      double force_sigma,
                                                      bool correlated_within_press = false,

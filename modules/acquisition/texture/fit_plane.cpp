@@ -84,10 +84,17 @@ FittedPlane fitPlane(const Picture& picture, const PlaneFitOptions& options, Pro
               picture.texel[static_cast<std::size_t>((y * side + x) * picture.channels)]);
   if (!heights.allFinite()) throw Error("has a texel that is no number");
   FittedPlane fitted;
-  fitted.rms = std::sqrt((heights.array() - heights.mean()).square().mean());
+  const auto takeOffMean = [&] {
+    heights.array() -= heights.mean();
+    fitted.rms = std::sqrt(heights.array().square().mean());
+  };
+  takeOffMean();
   if (!(fitted.rms > 1e-9 * options.height)) throw Error("is as high everywhere");
-  if (options.blend > 0) heights = seamlessBothWays(std::move(heights), options.blend);
-  heights.array() -= heights.mean();
+  if (options.blend > 0) {
+    heights = seamlessBothWays(std::move(heights), options.blend);
+    takeOffMean();
+  }
+  fitted.samples = static_cast<std::size_t>(heights.cols());
   progress.report(0.2, "harmonics");
 
   const int harmonics = std::min(options.harmonics, static_cast<int>((heights.cols() - 1) / 2));

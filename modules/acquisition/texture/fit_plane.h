@@ -25,8 +25,9 @@ struct PlaneFitOptions {
 
 struct FittedPlane {
   FourierTexture texture;
+  std::size_t samples = 0;   // samples per period, along each axis
   int rank = 0;              // number of products; 0: the plane itself
-  double rms = 0;            // heights about their mean [m]
+  double rms = 0;            // blended heights about their mean [m]
   double residual = 0;       // rms of the blended heights minus the texture [m]
   double relative_error = 0; // relative rms error of the low-rank approximation
 };
