@@ -12,9 +12,9 @@
 #include "session/open/session.h"
 #include "visualization/export/export_files.h"
 #include "visualization/layers/stability_layer.h"
+#include "visualization/plots/video.h"
 #include "visualization/view/display.h"
 #include "visualization/view/figure_file.h"
-#include "visualization/view/video.h"
 
 namespace patina::cli {
 
