@@ -34,6 +34,12 @@ ObjectList::ObjectList(QWidget* parent)
                            if (chosen() >= 0)
                              emit pictureRequested(static_cast<std::size_t>(chosen()));
                          });
+  addButton<QToolButton>(buttons, "object_unit", tr("Unit…"),
+                         tr("Corrects the unit or the upper axis of the selected object's file"),
+                         this, [this] {
+                           if (chosen() >= 0)
+                             emit unitRequested(static_cast<std::size_t>(chosen()));
+                         });
   buttons->addStretch(1);
   remove_ = addButton<QToolButton>(buttons, "remove_object", tr("Remove"), {}, this,
                                    &ObjectList::removeChosen);
