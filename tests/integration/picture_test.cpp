@@ -77,8 +77,10 @@ TEST(Pictures, HaveTheSlicesOfTheWorkspaceUnlessOthersAreNamed) {
   const ScratchFolder folder;
   const std::string box = folder / "box.ply", kept = folder / "kept";
   ASSERT_EQ(run({"model", "box", "-o", box}).exit, 0);
-  ASSERT_EQ(run({"scene", box, "-o", kept, "--set", "slice=x:2mm", "--set", "slice3=0,1,1"}).exit,
-            0);
+  ASSERT_EQ(
+      run({"scene", "-o", kept, "--add", box, "--set", "slice=x:2mm", "--set", "slice3=0,1,1"})
+          .exit,
+      0);
   const auto drawn = [&](const std::string& scene, const std::vector<std::string>& slices) {
     std::vector<std::string> words = {"render", scene,    "-o",      folder / "p.png", "--show",
                                       "slice",  "--size", "160x120", "--resolution",   "50"};
