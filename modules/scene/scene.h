@@ -18,6 +18,7 @@
 #include "scene/paint/relief_settings.h"
 #include "scene/pin.h"
 #include "scene/scene_scan.h"
+#include "scene/slice_position.h"
 
 namespace patina {
 
@@ -45,6 +46,7 @@ struct Scene {
   std::optional<Stabilisers> stabilisers;  // absent: chosen from device_model (auto)
   std::vector<Pin> pins;                   // without haptic effect
   ColorScales colors;                      // colours of pictures
+  Slices slices;                           // planes of pictures
 };
 
 // Returns true if the text is a valid name of an object or a scan.

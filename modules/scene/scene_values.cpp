@@ -343,6 +343,21 @@ Entry colorEntry(const std::string& key, const std::string& thing) {
           }};
 }
 
+// Entry for the position of a slice; the key must outlive it.
+Entry sliceEntry(const std::string& key, std::size_t index) {
+  return {{key, "", "none"},
+          [&key, index](Scene& s, const std::string& t) {
+            try {
+              s.slices[index] = isNone(t) ? std::nullopt : std::optional(parseSlice(t));
+            } catch (const Error& error) {
+              throw Error(key + ": " + error.what());
+            }
+          },
+          [index](const Scene& s) {
+            return s.slices[index] ? Text(format(*s.slices[index])) : Text();
+          }};
+}
+
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> kEntries = [] {
     std::vector<Entry> all = hapticEntries();
@@ -356,6 +371,8 @@ const std::vector<Entry>& entries() {
                    [](const Scene& s) { return s.pins.empty() ? Text() : Text(format(s.pins)); }});
     for (std::size_t i = 0; i < keys.size(); ++i)
       all.push_back(colorEntry(keys[i], coloredThings()[i]));
+    static const std::array<std::string, kMaxSlices> slices = {"slice", "slice2", "slice3"};
+    for (std::size_t i = 0; i < kMaxSlices; ++i) all.push_back(sliceEntry(slices[i], i));
     return all;
   }();
   return kEntries;

@@ -101,6 +101,44 @@ TEST(Geodesic, FollowsTheHelicesOfATube) {
                 2e-4 * 0.07);
 }
 
+// A cone unrolls to a sector: the shorter way round is a chord of it.
+TEST(Geodesic, TakesTheShorterWayRoundAConeOfManyFaces) {
+  constexpr int kAround = 400, kAlong = 100;
+  constexpr double kSlant = 0.08, kRadius = 0.05;
+  TriangleMesh cone = tube(kRadius, 1, kAround, kAlong);
+  for (Vec3& p : cone.positions) {
+    const double slant = kSlant * (0.02 + 0.98 * p.z());
+    p.head<2>() *= slant / kSlant;
+    p.z() = -slant * std::sqrt(1 - kRadius * kRadius / kSlant / kSlant);
+  }
+  const Measured m(cone);
+  ASSERT_GT(cone.triangles.size(), 50'000U);
+  std::mt19937 random(8);
+  std::uniform_int_distribution<int> around(0, kAround - 1), along(30, kAlong);
+  for (int i = 0; i < 12; ++i) {
+    const int first = around(random), low = along(random), high = along(random);
+    // Half way round less up to 1 %: the two ways differ by some tenths of a percent or more.
+    const int second = (first + kAround / 2 - 1 - i % 4) % kAround;
+    const auto slantAt = [&](int row) { return kSlant * (0.02 + 0.98 * row / kAlong); };
+    const double angle = 2 * M_PI * kRadius / kSlant * (kAround / 2 - 1 - i % 4) / kAround;
+    const double a = slantAt(low), b = slantAt(high);
+    const double chord = std::sqrt(a * a + b * b - 2 * a * b * std::cos(angle));
+    const double length = m.over(cone.positions[static_cast<std::size_t>(low * kAround + first)],
+                                 cone.positions[static_cast<std::size_t>(high * kAround + second)]);
+    EXPECT_NEAR(length, chord, 2e-4 * chord) << i;
+  }
+}
+
+TEST(Geodesic, JoinsOppositePointsOfABallOfManyFaces) {
+  const Measured m(icosphere(0.03, 80));
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 a = 0.03 * Vec3(normal(random), normal(random), normal(random)).normalized();
+    EXPECT_NEAR(m.over(a, -a), 0.03 * M_PI, 5e-4 * 0.03 * M_PI);
+  }
+}
+
 TEST(Geodesic, IsAsLongBackAsForthFromVerticesEdgesAndFaces) {
   std::mt19937 random(3);
   for (const TriangleMesh& mesh : {icosphere(0.03, 20), vase()}) {

@@ -235,10 +235,10 @@ TEST_F(Controls, TurnsAMeshWithYUpOnRequestAndRemembersIt) {
   ASSERT_TRUE(waitUntil([&] { return ready; }));
   const Vec3 size = bounds(*edits().scene()->mesh).sizes();
   EXPECT_GT(size.z(), 2.9 * size.x()) << "60 of 20 by 40";
-  EXPECT_TRUE(find<QAction>("y_up")->isChecked());
   documents().setInteractive(false);
-  window_ = std::make_unique<MainWindow>();
-  EXPECT_TRUE(find<QAction>("y_up")->isChecked()) << "in the next session, too";
+  chooseInMenu(QStringLiteral("&Edit"), QStringLiteral("&Preferences…"));
+  ASSERT_TRUE(waitUntil([&] { return find<QCheckBox>("y_up") != nullptr; }, 3000));
+  EXPECT_TRUE(find<QCheckBox>("y_up")->isChecked());
 }
 
 TEST_F(Controls, FitsATurnedObjectToThePictureOnRequest) {

@@ -133,11 +133,20 @@ TEST_F(Fit, EveryDeskAtEverySize) {
   }
 }
 
-// This runs in a program of its own, with a scale of two.
+TEST_F(Fit, EveryDeskInTheDarkTheme) {
+  applyStyle(application(), Theme::dark);
+  takeSize(1024, 700);
+  checkAll("dark");
+  applyStyle(application(), Theme::light);
+}
+
+// This runs in a program of its own, with a scale of two and a screen of 3840 x 2160.
 TEST_F(Fit, DISABLED_EveryDeskAtTwice) {
   ASSERT_EQ(window_->devicePixelRatioF(), 2);
-  takeSize(1280, 760); // its frame fills 2560 x 1600 of the screen
+  takeSize(1280, 760);
   checkAll("twice");
+  takeSize(1920, 1040); // its frame fills the screen
+  checkAll("4k");
 }
 
 TEST(FitAtTwice, EveryDesk) {
@@ -145,6 +154,7 @@ TEST(FitAtTwice, EveryDesk) {
   const pid_t child = fork();
   if (child == 0) {
     setenv("QT_SCALE_FACTOR", "2", 1);
+    setenv("PATINA_SCREEN", "3840x2160x24", 1);
     execl("/proc/self/exe", "gui_tests", "--gtest_also_run_disabled_tests",
           "--gtest_filter=Fit.DISABLED_EveryDeskAtTwice", nullptr);
     _exit(1);

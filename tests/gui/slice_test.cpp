@@ -136,6 +136,54 @@ TEST_F(SliceWindowTest, GivesTheHistogramOfItsDistances) {
   }
 }
 
+TEST_F(SliceWindowTest, ShowsThreeAtOnceWhichUndoTakesBackAndTheWorkspaceKeeps) {
+  if (IsSkipped()) return;
+  typeOver(*find<ValueRow>("slice_position")->findChild<QDoubleSpinBox*>(), QStringLiteral("5"));
+  clickRow("slice2");
+  typeOver(*find<ValueRow>("slice_position")->findChild<QDoubleSpinBox*>(), QStringLiteral("-7.5"));
+  clickRow("slice3");
+  typeOver(*find<QLineEdit>("slice_direction"), QStringLiteral("0,1,1"));
+  typeOver(*find<ValueRow>("slice_position")->findChild<QDoubleSpinBox*>(), QStringLiteral("12.5"));
+  const Slices wanted = {SlicePosition{Vec3::UnitY(), 0.005}, SlicePosition{Vec3::UnitX(), -0.0075},
+                         SlicePosition{Vec3(0, 1, 1).normalized(), 0.0125}};
+  const auto slices = [&] { return edits().scene()->scene.slices; };
+  keepScreen("slices_three");
+  ASSERT_TRUE(waitUntil([&] { return slices() == wanted; }, 5000))
+      << format(slices()[0].value()) << ' ' << format(slices()[1].value()) << ' '
+      << format(slices()[2].value());
+  EXPECT_NEAR(plane().origin.dot(wanted[2]->normal), 0.0125, 1e-9) << "the selected one";
+  EXPECT_EQ(find<ColorPanel>()->title(), QStringLiteral("Colours: slice"));
+  wait(300);
+  keepScreen("slices_three");
+  EXPECT_TRUE(test::misfits(*find<DisplayPanel>()).isEmpty());
+  find<ToolBar>()->choose({InteractionMode::navigate, {}}); // A click selects what it hits.
+  for (std::size_t i = 0; i < kMaxSlices; ++i) {
+    std::optional<QPoint> hit;
+    for (int at = 0; at < 4800 && !hit; ++at) {
+      const QPoint from_middle(10 * (at % 80 - 40), 10 * (at / 80 - 30));
+      if (!view().rect().adjusted(90, 20, -20, -90).contains(middle() + from_middle)) continue;
+      const auto front = view().frontAt(middle() + from_middle);
+      if (front && front->layer == Layer::slice && front->slice == i) hit = from_middle;
+    }
+    ASSERT_TRUE(hit) << "slice " << i + 1 << " is in sight";
+    pointAt(inView(*hit));
+    press(), release();
+    wait(50);
+    EXPECT_NEAR(plane().origin.dot(wanted[i]->normal), *wanted[i]->position, 1e-9);
+    EXPECT_NEAR(find<ValueRow>("slice_position")->value(), 1000 * *wanted[i]->position, 1e-9);
+  }
+  saving().saveTo(QString::fromStdString((folder_ / "cut").string()));
+  EXPECT_EQ(loadWorkspace(folder_ / "cut").slices, wanted);
+  wait(800); // The values become one step.
+  clickRow("slice2");
+  ASSERT_TRUE(waitUntil([&] { return !slices()[1]; }, 5000));
+  wait(800);
+  view().setFocus();
+  type('z', kControl);
+  ASSERT_TRUE(waitUntil([&] { return slices() == wanted; }, 5000)) << "undo brings it back";
+  EXPECT_TRUE(isShown("slice2"));
+}
+
 constexpr double kRelief = 1e-3;
 
 // The ball is raised by a baked relief of constant height.

@@ -72,6 +72,29 @@ TEST(Pictures, OfAWidthOnPaperHaveItsPixelsAndResolution) {
   EXPECT_EQ(readFile(folder / "p.pdf").substr(0, 4), "%PDF");
 }
 
+TEST(Pictures, HaveTheSlicesOfTheWorkspaceUnlessOthersAreNamed) {
+  if (!hasDisplay()) GTEST_SKIP() << "neither Xvfb nor DISPLAY";
+  const ScratchFolder folder;
+  const std::string box = folder / "box.ply", kept = folder / "kept";
+  ASSERT_EQ(run({"model", "box", "-o", box}).exit, 0);
+  ASSERT_EQ(
+      run({"scene", "-o", kept, "--add", box, "--set", "slice=x:2mm", "--set", "slice3=0,1,1"})
+          .exit,
+      0);
+  const auto drawn = [&](const std::string& scene, const std::vector<std::string>& slices) {
+    std::vector<std::string> words = {"render", scene,    "-o",      folder / "p.png", "--show",
+                                      "slice",  "--size", "160x120", "--resolution",   "50"};
+    for (const std::string& slice : slices) words.insert(words.end(), {"--slice", slice});
+    std::filesystem::remove(folder / "p.png");
+    const Outcome outcome = run(words);
+    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    return readFile(folder / "p.png");
+  };
+  EXPECT_EQ(drawn(kept, {}), drawn(box, {"x:2mm", "0,1,1"}));
+  EXPECT_EQ(drawn(kept, {"y"}), drawn(box, {}));
+  EXPECT_NE(drawn(kept, {}), drawn(kept, {"x:2mm"}));
+}
+
 TEST(Pictures, NameTheChoicesForWhatIsNone) {
   const ScratchFolder folder;
   const std::string box = folder / "box.ply", out = folder / "p.png";
@@ -87,6 +110,8 @@ TEST(Pictures, NameTheChoicesForWhatIsNone) {
   refused({"--width", "12.5"}, "85mm");
   refused({"--slice", "w"}, "0,1,1");
   refused({"--slice", "x:1mm"}, "--show");
+  refused({"--show", "slice", "--slice", "x", "--slice", "y", "--slice", "z", "--slice", "0,1,1"},
+          "three");
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 

@@ -280,7 +280,7 @@ TEST_F(PaintPicture, SliceShowsPaintedMaterial) {
   view_.setField(std::make_shared<SurfaceField>(sampleFunction(
       [](const Vec3& p) { return p.norm() - kRadius; },
       gridAround(Box3(Vec3::Constant(-kRadius), Vec3::Constant(kRadius)), spec), spec.band)));
-  view_.setSlice({});
+  view_.setSlices({});
   const Pixels pixels =
       drawn("slice", {Layer::mesh, Layer::slice, layerOf(quantityOf(MaterialChannel::stiffness))},
             ViewPreset::minus_y);

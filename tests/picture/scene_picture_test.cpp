@@ -92,7 +92,7 @@ TEST_F(ScenePicture, HiddenLayersDrawNothing) {
 }
 
 TEST_F(ScenePicture, SliceShowsBothSignsAndCutsTheSurfaceOpen) {
-  view_.setSlice({});
+  view_.setSlices({});
   const Pixels pixels = drawn("slice", {Layer::mesh, Layer::slice, Layer::extent});
   EXPECT_GT(pixels.share(isWarm), 0.02);
   EXPECT_GT(pixels.share(isCool), 0.02);
@@ -157,7 +157,7 @@ TEST_F(ScenePicture, BandIsAShellInItsOwnColourWithALegend) { // K12, K13
 
 TEST_F(ScenePicture, SliceShowsTheBandAsTintAndLine) {
   view_.setBand(TouchBand{TouchBand::Kind::magnet, 0.003});
-  view_.setSlice({});
+  view_.setSlices({});
   const auto seen = [this](const char* name, const std::set<Layer>& layers) {
     return drawn(name, layers, ViewPreset::minus_y).share(isMagenta);
   };
@@ -320,7 +320,8 @@ TEST_F(ScenePicture, NamesWhatIsInFrontOnARay) {
   EXPECT_EQ(shell->layer, Layer::iso);
   EXPECT_NEAR(shell->point.z(), kMinor + 0.003, 1e-5);
 
-  view_.setSlice({Vec3::UnitZ(), 0}); // z = 0, seen from above: the upper half is hidden
+  view_.setSlices(
+      {SlicePosition{Vec3::UnitZ(), 0.0}}); // z = 0, seen from above: the upper half is hidden
   drawn("front", {Layer::mesh, Layer::slice}, ViewPreset::plus_z);
   const double near_surface = kMajor + kMinor - 0.002;
   const auto cut = view_.frontAlong({Vec3(near_surface, 0, 1), -Vec3::UnitZ()});
@@ -345,7 +346,7 @@ TEST_F(ScenePicture, FindsTheVisibleVertexNearARay) {
 
 // The field's reach of 8 voxels is near 6.9 mm, of which 2 mm is the round step for four lines.
 TEST_F(ScenePicture, SliceHasContourLinesAtRoundDistances) {
-  view_.setSlice({Vec3::UnitZ(), 0.0});
+  view_.setSlices({SlicePosition{Vec3::UnitZ(), 0.0}});
   setParallel(*view_.renderer().GetActiveCamera(), true);
   const Pixels pixels = drawn("contours", {Layer::slice}, ViewPreset::plus_z, {1600, 1200});
   vtkCamera& camera = *view_.renderer().GetActiveCamera();
@@ -367,6 +368,51 @@ TEST_F(ScenePicture, SliceHasContourLinesAtRoundDistances) {
   constexpr double kStep = 2e-3;
   for (const int line : {-2, -1, 0, 1, 2}) EXPECT_LT(dip(line * kStep), 0.94) << line;
   for (const int line : {-2, -1, 0, 1}) EXPECT_GT(dip((line + 0.5) * kStep), 0.97) << line;
+}
+
+// Each pixel has the colour of the plane that its ray crosses first where a distance is shown.
+TEST_F(ScenePicture, ThreeSlicesHideOneAnother) {
+  const Slices planes = {SlicePosition{Vec3::UnitX(), 0.01}, SlicePosition{Vec3::UnitY(), -0.012},
+                         SlicePosition{Vec3(0, 0.6, 0.8), 0.002}};
+  std::vector<Pixels> alone;
+  for (std::size_t i = 0; i < kMaxSlices; ++i) {
+    view_.setSlices({planes[i]});
+    alone.push_back(drawn("slice" + std::to_string(i), {Layer::slice}));
+  }
+  view_.setSlices(planes);
+  const Pixels together = drawn("slices", {Layer::slice});
+  vtkCamera& camera = *view_.renderer().GetActiveCamera();
+  const double voxel = torusField()->grid.voxel;
+  std::array<int, kMaxSlices> seen{};
+  int differ = 0;
+  for (int y = 5; y < together.height(); y += 11)
+    for (int x = 5; x < together.width() * 8 / 10; x += 11) {
+      const double high = together.height();
+      const Ray ray = rayThrough(camera, (x + 0.5 - together.width() / 2.0) / high,
+                                 (y + 0.5 - together.height() / 2.0) / high);
+      std::optional<std::size_t> first;
+      double depth = 1e9;
+      bool unsure = false; // at an edge of what is shown
+      for (std::size_t i = 0; i < kMaxSlices; ++i) {
+        const double slant = ray.direction.dot(planes[i]->normal);
+        const double t = (*planes[i]->position - ray.origin.dot(planes[i]->normal)) / slant;
+        const double voxels = std::abs(torusDistance(ray.origin + t * ray.direction)) / voxel;
+        unsure = unsure || std::abs(voxels - (i < 2 ? 6.25 : 4.8)) < 0.8;
+        if (voxels > (i < 2 ? 6.25 : 4.8) || t > depth) continue;
+        depth = t;
+        first = i;
+      }
+      if (unsure) continue;
+      const auto front = view_.frontAlong(ray);
+      ASSERT_EQ(front && front->layer == Layer::slice, first.has_value()) << x << ", " << y;
+      if (!first) continue;
+      ASSERT_EQ(front->slice, *first) << x << ", " << y;
+      EXPECT_NEAR((front->point - ray.origin).norm(), depth, 1e-9);
+      ++seen[*first];
+      differ += (together.at(x, y) - alone[*first].at(x, y)).cwiseAbs().maxCoeff() > 12;
+    }
+  for (const int count : seen) EXPECT_GT(count, 30);
+  EXPECT_LT(differ, (seen[0] + seen[1] + seen[2]) / 50);
 }
 
 TEST_F(ScenePicture, ColoursTheSliceByItsScale) {

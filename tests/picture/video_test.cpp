@@ -11,7 +11,8 @@
 #include "support/fresh_folder.h"
 #include "support/small_disk.h"
 #include "visualization/export/export_files.h"
-#include "visualization/view/video.h"
+#include "visualization/plots/replay_plot.h"
+#include "visualization/plots/video.h"
 
 namespace patina {
 namespace {
@@ -74,6 +75,50 @@ TEST_F(VideoTest, HasAFrameEvery40MillisecondsAndAppearsWhenItIsComplete) {
   EXPECT_EQ(side(14), 322);
   EXPECT_EQ(side(17), 240);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << "nothing else";
+}
+
+// The plot's line is where the sample's time is, and the curve's highest point at the last sample.
+TEST_F(VideoTest, HasTheReplayPlotBesideThePicture) {
+  const std::vector<ToolSample> samples = pressingDown();
+  const ReplayPlot plot(samples, {160, 240}, 1);
+  const vtkNew<vtkImageData> picture;
+  picture->SetDimensions(200, 240, 1);
+  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  std::fill_n(static_cast<unsigned char*>(picture->GetScalarPointer()), 3 * 200 * 240, 7);
+  const auto isColor = [](const unsigned char* pixel, const palette::Color& color) {
+    bool all = true;
+    for (std::size_t c = 0; c < 3; ++c) all = all && std::abs(pixel[c] - 255 * color[c]) < 30;
+    return all;
+  };
+  std::vector<double> lines;
+  for (const std::size_t i : {0U, 250U, 500U, 1000U}) {
+    const auto frame = plot.beside(*picture, samples[i]);
+    ASSERT_EQ(frame->GetDimensions()[0], 360);
+    ASSERT_EQ(frame->GetDimensions()[1], 240);
+    const auto at = [&](int x, int y) {
+      return static_cast<const unsigned char*>(frame->GetScalarPointer(x, y, 0));
+    };
+    EXPECT_EQ(at(199, 239)[0], 7);
+    EXPECT_GT(at(201, 239)[0], 250);
+    std::vector<int> columns;
+    for (int x = 200; x < 360; ++x)
+      if (isColor(at(x, 200), palette::kTool) && isColor(at(x, 100), palette::kTool))
+        columns.push_back(x);
+    ASSERT_EQ(columns.size(), 2U) << i;
+    lines.push_back(0.5 * (columns.front() + columns.back()));
+  }
+  const double axis = lines[3] - lines[0];
+  EXPECT_GT(axis, 60);
+  EXPECT_NEAR(lines[1] - lines[0], axis / 4, 1);
+  EXPECT_NEAR(lines[2] - lines[0], axis / 2, 1);
+  const auto frame = plot.beside(*picture, samples[0]);
+  int highest_x = 0;
+  for (int y = 239; y > 0 && highest_x == 0; --y)
+    for (int x = 200; x < 360; ++x) {
+      const auto* pixel = static_cast<const unsigned char*>(frame->GetScalarPointer(x, y, 0));
+      if (isColor(pixel, palette::kSeries[0])) highest_x = x;
+    }
+  EXPECT_NEAR(highest_x, lines[3], 2) << "the force grows to the end";
 }
 
 TEST_F(VideoTest, FailsOnADiskThatIsFullAndLeavesNothing) {

@@ -250,7 +250,7 @@ TEST(SceneValues, UnknownKeyListsTheKnownKeys) {
         "device.coulomb "
         "device.encoder device.rate device.delay device pins colors.slice colors.iso colors.mesh "
         "colors.error colors.relief colors.stiffness colors.friction.static "
-        "colors.friction.dynamic colors.damping colors.roughness");
+        "colors.friction.dynamic colors.damping colors.roughness slice slice2 slice3");
   }
 }
 

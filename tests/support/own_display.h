@@ -24,8 +24,9 @@ class XServer {
     int said[2];
     if (pipe2(said, O_CLOEXEC) != 0) return;
     said_ = said[0];
+    const char* screen = std::getenv("PATINA_SCREEN"); // for tests of another size
     std::vector<std::string> words = {"Xvfb",     "-displayfd", std::to_string(said[1]),
-                                      "-screen",  "0",          "2560x1600x24",
+                                      "-screen",  "0",          screen ? screen : "2560x1600x24",
                                       "-noreset", "-nolisten",  "tcp"};
     if (number) words.push_back(":" + std::to_string(*number));
     std::vector<char*> arguments;

@@ -144,7 +144,11 @@ TEST(SliceText, HasADirectionAndAPosition) {
   EXPECT_DOUBLE_EQ(slice.position.value(), 0.0125);
   EXPECT_EQ(directionText(slice.normal), "0, 0.6, 0.8");
   EXPECT_EQ(directionText(-Vec3::UnitX()), "-x");
-  for (const char* bad : {"", "w", "0,0,0", "1,2", "1,2,3,4", "1,2,nan", "x:", "x:5furlong"})
+  EXPECT_EQ(format(parseSlice("-x:3mm")), "-x:0.003");
+  for (const char* text : {"1,2,3:0.1mm", "0,1,1", "z"})
+    EXPECT_EQ(parseSlice(format(parseSlice(text))), parseSlice(text)) << text;
+  for (const char* bad :
+       {"", "w", "0,0,0", "1,2", "1,2,3,4", "1,2,nan", "x:", "x:5furlong", "x:inf"})
     EXPECT_THROW(parseSlice(bad), Error) << bad;
 }
 

@@ -12,9 +12,9 @@
 #include "session/open/session.h"
 #include "visualization/export/export_files.h"
 #include "visualization/layers/stability_layer.h"
+#include "visualization/plots/video.h"
 #include "visualization/view/display.h"
 #include "visualization/view/figure_file.h"
-#include "visualization/view/video.h"
 
 namespace patina::cli {
 
@@ -27,7 +27,7 @@ struct RenderOptions {
   Figure figure;
   FigureWidth width;
   bool sized = false; // --width was given
-  std::optional<SlicePosition> slice;
+  std::vector<SlicePosition> slices;
   std::optional<Vec3> tip;
   std::optional<ValueRange> range;
   ColorScales colors;
@@ -141,7 +141,7 @@ int runRender(const RenderOptions& options, Console& console) {
   if (!options.tip && !is_video &&
       (options.layers.contains(Layer::tip) || options.layers.contains(Layer::nodes)))
     throw Error("--show: the layers tip and nodes need --tip X,Y,Z");
-  if (options.slice && !options.layers.contains(Layer::slice))
+  if (!options.slices.empty() && !options.layers.contains(Layer::slice))
     throw Error("--slice: the layer slice is not shown: add it to --show");
   Scene scene = openWith(options.input, options.scene, console);
   if (scene.objects.empty())
@@ -158,6 +158,8 @@ int runRender(const RenderOptions& options, Console& console) {
            paintOf(layer);
   });
   SceneView view;
+  Slices slices = options.slices.empty() ? scene.slices : Slices();
+  std::copy(options.slices.begin(), options.slices.end(), slices.begin());
   ColorScales colors = scene.colors;
   for (const auto& [thing, scale] : options.colors) colors[thing] = scale;
   if (options.range) { // takes the place of the workspace's rule
@@ -196,7 +198,7 @@ int runRender(const RenderOptions& options, Console& console) {
     if (options.tip) view.setTool(toolAt(*compiled, *options.tip, console.progress()));
   }
   console.progress().throwIfCancelled();
-  if (options.slice) view.setSlice(*options.slice);
+  view.setSlices(slices);
   view.showOnly(options.layers);
   view.setView(options.view);
   if (is_video) {
@@ -262,7 +264,7 @@ Command renderCommand() {
           "opacity.\n"
           "Needs a display; on a machine without one: xvfb-run -a patina render ...",
       .examples = {"patina render bunny.ply -o bunny.png --show mesh,slice --view +y",
-                   "patina render bunny.ply -o cut.png --show mesh,slice --slice 0,1,1:12.5mm",
+                   "patina render bunny.ply -o cut.png --show slice --slice x --slice 0,1,1:9mm",
                    "patina render bunny.ply -o touch.png --show mesh,tip --tip 0,0,49mm",
                    "patina render bunny.ply -o fig.tif --width 85mm --background transparent",
                    "patina render bunny.ply -o cut.png --show slice --colors slice=viridis,bands=8",
@@ -294,15 +296,22 @@ Command renderCommand() {
                      parsedInto(options->figure.background, parseFigureBackground)},
                     {"--without", "PARTS", "", "", "Parts to leave out, with commas between.",
                      parsedInto(options->figure.without, parseFigureParts)},
-                    {"--slice", "DIRECTION:POSITION", "", "y, in the middle",
+                    {"--slice", "DIRECTION:POSITION", "", "as in the workspace, or y",
                      "Where the layer slice is: as x:12.5mm, or at an angle as 0,1,1:12.5mm; the "
-                     "position is along the direction, from the origin.",
-                     parsedInto(options->slice, parseSlice)},
+                     "position is along the direction, from the origin; without, the middle. Up to "
+                     "three slices.",
+                     [options](const std::string& text) {
+                       if (options->slices.size() == kMaxSlices)
+                         throw Error("at most three slices are drawn at once");
+                       options->slices.push_back(parseSlice(text));
+                     },
+                     Times::any},
                     {"--tip", "X,Y,Z", "m", "", "Place of the tip; units as 1mm,0,2mm.",
                      parsedInto(options->tip, parsePoint)},
                     {"--replay", "RECORDING.csv", "", "",
                      "Makes a video of 25 frames a second of a recording of the window or a table "
-                     "of patina feel, with --show mesh,tip and -o VIDEO.ogv.",
+                     "of patina feel, the force over time beside it, with --show mesh,tip and -o "
+                     "VIDEO.ogv.",
                      into(options->replay)},
                     {"--range", "LOW,HIGH", "", "what is there",
                      "Ends of the scale of what was painted, SI or as 0,0.5mm.",

@@ -438,9 +438,9 @@ Command sceneCommand() {
           "the papers), relief.smoothing [m] (deviation along the surface), paint.size (texels a "
           "side of the images that painting makes), stabiliser (auto, none, coupling, passivity), "
           "device.mass [kg], device.damping [N s/m], device.coulomb [N], device.encoder [m], "
-          "device.rate [Hz], device.delay [samples], device, pins (NAME=X,Y,Z;...), and how things "
-          "are "
-          "coloured, see patina render: colors." +
+          "device.rate [Hz], device.delay [samples], device, pins (NAME=X,Y,Z;...), slice, slice2 "
+          "and slice3 (DIRECTION:POSITION), and how things are coloured, see patina render: "
+          "colors." +
           joined(coloredThings(), ", colors.") +
           ". The value none makes a feature absent.\n"
           "A pose is a text file of 4 x 4 numbers, row by row: world from object, in metres. A "

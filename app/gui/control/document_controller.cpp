@@ -424,6 +424,23 @@ void DocumentController::layPictureDialog(std::size_t object) {
              asked);
 }
 
+void DocumentController::unitDialog(std::size_t object) {
+  const auto& scene = at_.edits.scene();
+  if (!scene || object >= scene->scene.objects.size()) return;
+  const SceneObject& shown = scene->scene.objects[object];
+  const Box3 box = bounds(*shown.mesh);
+  const double longest = box.isEmpty() ? 0 : box.sizes().maxCoeff();
+  askReread(&at_.window, shownText(shown.name), longest,
+            [this, name = shown.name](MeshUnit was, MeshUnit now, UpAxis up) {
+              at_.edits.rereadObject(name, was, now, up, [this](const EditOutcome& outcome) {
+                if (outcome.problem.empty()) return;
+                showProblem(&at_.window, tr("The object keeps its size"),
+                            QString::fromStdString(outcome.problem),
+                            tr("Choose another unit, or open the file again."));
+              });
+            });
+}
+
 void DocumentController::take(OpenedEditor& opened) {
   const LoadRequest request = loader_.request();
   // Emitted before the task ends, because the choice of the desk depends on it.

@@ -106,6 +106,7 @@ class DocumentController : public QObject {
   void openRequested(const LoadRequest& request); // Unless the user cancels to keep unsaved edits.
   void openDialog(bool adds);
   void layPictureDialog(std::size_t object); // Asks for a picture and how to lay it.
+  void unitDialog(std::size_t object);       // Asks how its file should have been read.
   void cancel();                             // Cancels loading, or else the running edit.
   void close() { // Cancels loading; a thread that reads a file may go on.
     closing_ = true;

@@ -228,17 +228,12 @@ void EditController::changeValues(std::function<void(Scene&)> change) {
   thread_.apply("", [](const CompiledScene&) { return nullptr; });
 }
 
-void EditController::changeColors(const std::string& thing, const ColorScale& scale) {
+void EditController::changeLooks(std::function<void(Scene&)> change) {
   setUnsaved(true);
-  thread_.previewValues(
-      [thing, scale](Scene& scene) {
-        scene.colors.erase(thing);
-        if (scale != ColorScale{}) scene.colors[thing] = scale;
-      },
-      [this](const EditOutcome& outcome) {
-        emit colorsDone();
-        if (!outcome.problem.empty()) emit refused(QString::fromStdString(outcome.problem));
-      });
+  thread_.previewValues(std::move(change), [this](const EditOutcome& outcome) {
+    emit looksDone();
+    if (!outcome.problem.empty()) emit refused(QString::fromStdString(outcome.problem));
+  });
 }
 
 void EditController::addObjects(const std::vector<SceneObject>& objects, EditThread::Done done) {
@@ -265,6 +260,16 @@ void EditController::layPicture(const std::filesystem::path& file, const std::st
         Progress progress;
         patina::layPicture(*scene, now, edit, picture, surface, progress);
         return scene;
+      },
+      false, std::move(done));
+}
+
+void EditController::rereadObject(const std::string& object, MeshUnit was, MeshUnit now, UpAxis up,
+                                  EditThread::Done done) {
+  thread_.apply(
+      "read " + object + " in " + std::string(name(now)) + (up == UpAxis::y ? ", y up" : ""),
+      [=](const CompiledScene& present) {
+        return std::make_shared<const Scene>(withReread(present.scene, object, was, now, up));
       },
       false, std::move(done));
 }

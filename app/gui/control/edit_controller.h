@@ -16,6 +16,7 @@
 #include "app/gui/state/window_state.h"
 #include "session/edit/edit_thread.h"
 #include "session/edit/lay_picture.h"
+#include "session/edit/reread_object.h"
 
 namespace patina {
 
@@ -48,10 +49,12 @@ class EditController : public QObject {
   // Sends the values that panels have changed; called on each tick of the window.
   void previewValues();
   void changeValues(std::function<void(Scene&)> change); // One step of the history.
-  void changeColors(const std::string& thing, const ColorScale& scale);
+  void changeLooks(std::function<void(Scene&)> change);  // Colours or slices, at once.
   void addObjects(const std::vector<SceneObject>& objects, EditThread::Done done);
   void layPicture(const std::filesystem::path& file, const std::string& object, PictureEdit edit,
                   EditThread::Done done);
+  void rereadObject(const std::string& object, MeshUnit was, MeshUnit now, UpAxis up,
+                    EditThread::Done done);
   void setTool(const ToolChoice& choice) {
     paints_relief_ = choice == ToolChoice{InteractionMode::paint, Tool::relief};
     showRelief();
@@ -67,7 +70,7 @@ class EditController : public QObject {
   void sceneChanged(const patina::SceneChange& change);
   void changed();
   void refused(const QString& problem); // The scene is unchanged.
-  void colorsDone();                    // Once for each changeColors().
+  void looksDone();                     // Once for each changeLooks().
 
  private:
   void takeEvents();

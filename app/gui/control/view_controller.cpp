@@ -59,7 +59,10 @@ std::string CameraHand::problem() const {
 
 ViewController::ViewController(const Parts& parts, QObject* parent) : QObject(parent), at_(parts) {
   connect(&at_.display, &DisplayPanel::shownChanged, this, &ViewController::show);
-  connect(&at_.display, &DisplayPanel::selectionChanged, this, &ViewController::offerColors);
+  connect(&at_.display, &DisplayPanel::selectionChanged, this, [this] {
+    showSlices();
+    offerColors();
+  });
   connect(&at_.view, &SceneWidget::clicked, this, &ViewController::select);
   view().show(Layer::scale, at_.display.isShown("scale"));
   connectSlice();
@@ -80,9 +83,16 @@ ViewController::ViewController(const Parts& parts, QObject* parent) : QObject(pa
           [this](const std::string& thing, const ColorScale& scale) {
             scales_[thing] = scale;
             view().setColors(scales_); // Drawn before the edit is done.
-            ++colors_pending_;
-            emit colorsEdited(thing, scale);
+            edit([thing, scale](Scene& scene) {
+              scene.colors.erase(thing);
+              if (scale != ColorScale{}) scene.colors[thing] = scale;
+            });
           });
+}
+
+void ViewController::edit(const std::function<void(Scene&)>& change) {
+  ++edits_pending_;
+  emit editRequested(change);
 }
 
 void ViewController::show(const std::string& thing, bool on) {
@@ -97,24 +107,28 @@ void ViewController::select(const QPoint& pixel) {
   if (!front) return;
   const bool colored = front->layer == Layer::mesh && at_.display.isShown("stability");
   const bool painted = front->layer == Layer::mesh && at_.paint.shown();
-  at_.display.select(colored ? "stability" : painted ? "paint" : std::string(name(front->layer)));
+  const std::string number = front->slice > 0 ? std::to_string(front->slice + 1) : "";
+  at_.display.select(colored   ? "stability"
+                     : painted ? "paint"
+                               : std::string(name(front->layer)) + number);
+}
+
+void ViewController::showSlices() {
+  view().setSlices(at_.display.slices(), at_.display.slice());
+  at_.view.frames().cameraMoved(); // Drawn as soon as a camera motion.
 }
 
 void ViewController::connectSlice() {
-  const auto move = [this](const SlicePosition& place) {
-    slice_ = place;
-    view().setSlice(place);
-    at_.view.frames().cameraMoved(); // Drawn as soon as a camera motion.
-  };
-  connect(&at_.display, &DisplayPanel::sliceMoved, this, move);
-  connect(&at_.display, &DisplayPanel::sliceHandled, &at_.view, &SceneWidget::setSliceHandle);
-  connect(&at_.display, &DisplayPanel::sliceFacing, this, [this, move] {
-    move({-viewDirection(*view().renderer().GetActiveCamera()), {}});
-    at_.display.setSlice(slice_);
+  connect(&at_.display, &DisplayPanel::slicesChanged, this, [this] {
+    showSlices();
+    edit([slices = at_.display.slices()](Scene& scene) { scene.slices = slices; });
   });
-  connect(&at_.view, &SceneWidget::sliceMoved, this, [this, move](const ClipPlane& plane) {
-    move({plane.normal, plane.normal.dot(plane.origin)});
-    at_.display.setSlice(slice_);
+  connect(&at_.display, &DisplayPanel::sliceHandled, &at_.view, &SceneWidget::setSliceHandle);
+  connect(&at_.display, &DisplayPanel::sliceFacing, this, [this] {
+    at_.display.moveSlice({-viewDirection(*view().renderer().GetActiveCamera()), {}});
+  });
+  connect(&at_.view, &SceneWidget::sliceMoved, this, [this](const ClipPlane& plane) {
+    at_.display.moveSlice({plane.normal, plane.normal.dot(plane.origin)});
   });
   connect(&at_.display.lineProfile(), &QToolButton::toggled, &at_.view, [this](bool on) {
     at_.view.setDrawsLine(on);
@@ -135,7 +149,8 @@ void ViewController::showProfile(const Vec3& from, const Vec3& to, bool complete
 void ViewController::showHistogram() {
   if (!scene_) return;
   const SurfaceField& field = *shownField();
-  showPlot(*at_.view.window(), histogramPlot(planeOf(field, slice_), field.grid.voxel));
+  const auto slice = at_.display.slices()[at_.display.slice()].value_or(SlicePosition{});
+  showPlot(*at_.view.window(), histogramPlot(planeOf(field, slice), field.grid.voxel));
 }
 
 // Puts the plane through the centre, normal to the axis that is most along the sight.
@@ -191,6 +206,7 @@ void ViewController::showScene(const SceneChange& change) {
   if (!edited) showStability(nullptr);
   const bool new_field = change.surface || !scene_ || shownField() != scene.paint.field;
   scene_ = change.scene;
+  const double size_before = view().extent().diagonal().norm();
   if (change.surface) {
     view().setMesh(scene.mesh);
     at_.display.lineProfile().setChecked(false);
@@ -202,38 +218,46 @@ void ViewController::showScene(const SceneChange& change) {
     at_.display.setField(shownField().get());
   }
   showPaint(scene.scene);
-  if (!edited) colors_pending_ = 0;
-  takeColors();
+  if (!edited) edits_pending_ = 0;
+  takeLooks();
   if (change.values) {
     view().setTipRadius(scene.scene.haptics.tip_radius.value_or(0));
     const auto band = touchBand(scene.scene.haptics);
     view().setBand(band);
     at_.display.setBand(band.has_value());
   }
-  // A new scene needs a new camera and clip plane.
+  // A new scene needs a new camera and clip plane, another unit a new distance.
+  const double growth = view().extent().diagonal().norm() / size_before;
   if (!edited) view().setView(ViewPreset::iso);
+  if (edited && (growth > 3 || growth < 0.3)) view().fit();
   if (!edited && clip_) clip(true);
   content_ = Content::scene;
   offerColors();
 }
 
-// A scene that comes while colours are edited has older ones.
-void ViewController::takeColors() {
-  if (colors_pending_ > 0 || !scene_ || scene_->scene.colors == scales_) return;
+// A scene that comes while they are edited has older colours and slices.
+void ViewController::takeLooks() {
+  if (edits_pending_ > 0 || !scene_) return;
+  if (scene_->scene.slices != at_.display.slices()) {
+    at_.display.setSlices(scene_->scene.slices);
+    showSlices();
+  }
+  if (scene_->scene.colors == scales_) return;
   scales_ = scene_->scene.colors;
   view().setColors(scales_);
   at_.colors.setScales(scales_);
 }
 
-void ViewController::colorsDone() {
-  colors_pending_ = std::max(0, colors_pending_ - 1);
-  takeColors();
+void ViewController::editDone() {
+  edits_pending_ = std::max(0, edits_pending_ - 1);
+  takeLooks();
 }
 
 void ViewController::offerColors() {
   std::string thing = aligning_ ? "error" : at_.display.selected();
   const auto paint = at_.paint.shown();
   if (thing == "paint" && paint) thing = name(layerOf(*paint));
+  if (thing.starts_with("slice")) thing = "slice"; // All slices have one scale.
   at_.colors.setThing(content_ == Content::scene ? thing : "");
   emit coloredChanged();
 }
@@ -329,7 +353,7 @@ std::unique_ptr<SceneView> ViewController::copyOfView() {
   if (stability_) copy->setStability(stability_->surface.get(), displayRatios(stability_->map));
   copy->setTipRadius(haptics.tip_radius.value_or(0));
   copy->setBand(touchBand(haptics));
-  copy->setSlice(slice_);
+  copy->setSlices(at_.display.slices());
   copy->setIso(iso_);
   copy->setClip(clip_);
   for (const Layer layer : allLayers()) copy->show(layer, view().shown(layer));

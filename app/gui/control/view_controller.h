@@ -63,7 +63,7 @@ class ViewController : public QObject {
   }
   void showPreview(std::shared_ptr<const TriangleMesh> mesh, const QString& name);
   void showScene(const SceneChange& change);
-  void colorsDone();          // An edit of the colours is done, or refused.
+  void editDone();            // An edit that was requested is done, or refused.
   void setAligning(bool on) { // The desk Align is in front, whose error map has a scale.
     aligning_ = on;
     offerColors();
@@ -80,7 +80,7 @@ class ViewController : public QObject {
  signals:
   void notified(const patina::Message& message);
   void coloredChanged(); // The card Colours has another thing, or none.
-  void colorsEdited(const std::string& thing, const patina::ColorScale& scale);
+  void editRequested(const std::function<void(patina::Scene&)>& edit); // Colours or slices.
 
  private:
   // Draws the view in another window; a dialog says what fails.
@@ -94,9 +94,11 @@ class ViewController : public QObject {
   void showMesh(std::shared_ptr<const TriangleMesh> mesh);
   void showPaint(const Scene& scene);
   void connectSlice();
+  void showSlices();
+  void edit(const std::function<void(Scene&)>& change);
   void showProfile(const Vec3& from, const Vec3& to, bool complete);
   void showHistogram();
-  void takeColors();
+  void takeLooks();
   void offerColors(); // Hands the selected thing to the card Colours.
   void show(const std::string& thing, bool on);
   void select(const QPoint& pixel); // The row of what is in front there.
@@ -110,12 +112,11 @@ class ViewController : public QObject {
   Parts at_;
   Content content_ = Content::nothing;
   std::optional<ClipPlane> clip_;
-  SlicePosition slice_;
   double iso_ = 0;                                    // [m]
   std::shared_ptr<const CompiledScene> scene_;        // nullptr: none.
   std::shared_ptr<const SurfaceStability> stability_; // nullptr: none.
   ColorScales scales_;
-  int colors_pending_ = 0; // edits that are not done
+  int edits_pending_ = 0; // Colours and slices.
   bool aligning_ = false;
   std::unique_ptr<CameraHand> hand_;
   std::string hand_problem_; // The last problem that was reported.

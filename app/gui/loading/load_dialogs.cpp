@@ -2,15 +2,18 @@
 
 #include <QButtonGroup>
 #include <QCheckBox>
+#include <QComboBox>
 #include <QDialog>
 #include <QDialogButtonBox>
 #include <QDoubleSpinBox>
+#include <QFormLayout>
 #include <QMessageBox>
 #include <QRadioButton>
 #include <QVBoxLayout>
 
 #include "app/gui/toolkit/card.h"
 #include "app/gui/toolkit/words.h"
+#include "session/edit/reread_object.h"
 
 namespace patina {
 namespace {
@@ -77,6 +80,44 @@ void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
   dialog->layout()->addWidget(y_up);
   ask(dialog, parent, [group, y_up, answer = std::move(answer)] {
     answer(static_cast<MeshUnit>(group->checkedId()), y_up->isChecked() ? UpAxis::y : UpAxis::z);
+  });
+}
+
+void askReread(QWidget* parent, const QString& name, double longest,
+               std::function<void(MeshUnit, MeshUnit, UpAxis)> answer) {
+  QDialog* dialog =
+      questionAbout(parent, QDialog::tr("Unit and upper axis"),
+                    QDialog::tr("Mesh files contain no unit. %1 is %2 long as it was read.")
+                        .arg(name, inWords(longest)));
+  dialog->setObjectName(QStringLiteral("reread_dialog"));
+  auto* form = new QFormLayout;
+  static_cast<QVBoxLayout*>(dialog->layout())->addLayout(form);
+  const QString units[] = {QDialog::tr("millimetres"), QDialog::tr("centimetres"),
+                           QDialog::tr("metres"),
+                           QDialog::tr("inches")}; // the order is that of MeshUnit
+  auto* was = named(new QComboBox(dialog), "unit_was");
+  auto* now = named(new QComboBox(dialog), "unit_now");
+  for (QComboBox* combo : {was, now})
+    for (const QString& unit : units) combo->addItem(unit);
+  now->addItem(QDialog::tr("unknown: make it 100 mm long"));
+  auto* result = named(new QLabel(dialog), "unit_result");
+  form->addRow(QDialog::tr("Read as"), was);
+  form->addRow(QDialog::tr("It is in"), now);
+  form->addRow(QDialog::tr("Longest side"), result);
+  auto* y_up = named(new QCheckBox(QDialog::tr("y points upwards, not z"), dialog), "y_is_up");
+  dialog->layout()->addWidget(y_up);
+  const auto unitOf = [](const QComboBox* combo) {
+    return static_cast<MeshUnit>(combo->currentIndex());
+  };
+  const auto show = [=] {
+    const bool fits = unitOf(now) == MeshUnit::fit;
+    result->setText(inWords(fits ? 0.1 : longest * unitRatio(unitOf(was), unitOf(now))));
+  };
+  for (QComboBox* combo : {was, now})
+    QObject::connect(combo, qOverload<int>(&QComboBox::currentIndexChanged), dialog, show);
+  show();
+  ask(dialog, parent, [was, now, y_up, unitOf, answer = std::move(answer)] {
+    answer(unitOf(was), unitOf(now), y_up->isChecked() ? UpAxis::y : UpAxis::z);
   });
 }
 

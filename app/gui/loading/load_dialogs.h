@@ -15,6 +15,11 @@ namespace patina {
 void askUnit(QWidget* parent, const QString& name, double longest, UpAxis up,
              std::function<void(MeshUnit, UpAxis)> answer);
 
+// Queries in which unit a mesh was read and in which it is, and whether its y axis points upwards;
+// longest: its longest side as it is shown [m].
+void askReread(QWidget* parent, const QString& name, double longest,
+               std::function<void(MeshUnit was, MeshUnit now, UpAxis up)> answer);
+
 // Queries the value of a volume at the surface.
 void askIso(QWidget* parent, const QString& name, double low, double high,
             std::function<void(double)> answer);

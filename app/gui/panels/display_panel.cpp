@@ -6,6 +6,7 @@
 
 #include <QHBoxLayout>
 #include <QScrollBar>
+#include <QSignalBlocker>
 #include <QVBoxLayout>
 
 #include "app/gui/toolkit/words.h"
@@ -28,6 +29,8 @@ constexpr Row kRows[] = {
      true},
     {"slice", "Slice", "S",
      "A plane through the field, coloured by distance. The part in front of it is hidden."},
+    {"slice2", "Slice 2", "", "Another slice: the check mark adds or removes it"},
+    {"slice3", "Slice 3", "", "Another slice: the check mark adds or removes it"},
     {"iso", "Iso-surface", "I", "The surface at a distance: 0 is the object"},
     {"clip", "Clip plane", "Shift + S",
      "Hides the part in front of a plane. Its ball shifts the plane, the head of its arrow tilts "
@@ -45,11 +48,24 @@ constexpr Row kRows[] = {
     {"scale", "Scale bar", "L", "A length at the distance of the picture's centre", false, true}};
 
 QString tipOf(const Row& row) {
-  const bool is_layer = std::string(row.thing) != "clip" && std::string(row.thing) != "paint";
+  const std::vector<Layer>& layers = allLayers();
+  const bool is_layer = std::any_of(layers.begin(), layers.end(),
+                                    [&](Layer layer) { return name(layer) == row.thing; });
   QString tip = QStringLiteral("<b>%1</b>").arg(tr(row.words));
   if (*row.key != '\0') tip += QStringLiteral(" (%1)").arg(QString::fromUtf8(row.key));
   tip += QStringLiteral("<br>") + tr(row.tip);
   return is_layer ? tip + tr("<br>In commands: <i>--show %1</i>").arg(row.thing) : tip;
+}
+
+// Number of a slice's row from 0; nullopt: another thing.
+std::optional<std::size_t> sliceOf(const std::string& thing) {
+  if (!thing.starts_with("slice")) return std::nullopt;
+  return thing == "slice" ? 0 : static_cast<std::size_t>(thing.back() - '1');
+}
+
+// A slice that is added is normal to an axis that no other one has at first.
+SlicePosition newSlice(std::size_t index) {
+  return {index == 1 ? Vec3::UnitX() : index == 2 ? Vec3::UnitZ() : Vec3::UnitY(), {}};
 }
 
 } // namespace
@@ -71,9 +87,12 @@ DisplayPanel::DisplayPanel(QWidget* parent) : QGroupBox(tr("Show"), parent) {
   list_->setCurrentRow(0);
   connect(list_, &QListWidget::itemChanged, this, [this](QListWidgetItem* item) {
     const bool on = item->checkState() == Qt::Checked;
+    const std::string thing = item->data(Qt::UserRole).toString().toStdString();
+    const std::size_t further = sliceOf(thing).value_or(0);
+    if (further > 0) slices_[further] = on ? std::optional(newSlice(further)) : std::nullopt;
     if (on) list_->setCurrentItem(item); // Its values come with it.
     arrange();
-    emit shownChanged(item->data(Qt::UserRole).toString().toStdString(), on);
+    further > 0 ? emit slicesChanged() : emit shownChanged(thing, on);
   });
   connect(list_, &QListWidget::currentItemChanged, this, [this] {
     arrange();
@@ -144,7 +163,7 @@ void DisplayPanel::addSlice() {
     try {
       const Vec3 normal =
           parseSlice(direction_->text().replace(QStringLiteral("−"), "-").toStdString()).normal;
-      if (directionText(normal) != directionText(slice_.normal)) moveSlice({normal, {}});
+      if (directionText(normal) != directionText(place().normal)) moveSlice({normal, {}});
     } catch (const Error&) { // The text returns to the direction that is shown.
     }
     showSlice();
@@ -168,22 +187,27 @@ void DisplayPanel::addSlice() {
 }
 
 void DisplayPanel::moveSlice(const SlicePosition& place) {
-  slice_ = place;
+  slices_[slice_] = place;
   showSlice();
-  emit sliceMoved(slice_);
+  emit slicesChanged();
 }
 
-void DisplayPanel::setSlice(const SlicePosition& place) {
-  slice_ = place;
+void DisplayPanel::setSlices(const Slices& slices) {
+  slices_ = slices;
+  const QSignalBlocker quiet(list_);
+  for (std::size_t i = 1; i < kMaxSlices; ++i)
+    rows_.at("slice" + std::to_string(i + 1))
+        ->setCheckState(slices[i] ? Qt::Checked : Qt::Unchecked);
+  arrange();
   showSlice();
 }
 
 void DisplayPanel::showSlice() {
-  direction_->setText(shownText(directionText(slice_.normal)));
-  const auto range = grid_ ? std::optional(rangeOf(*grid_, slice_.normal)) : std::nullopt;
+  direction_->setText(shownText(directionText(place().normal)));
+  const auto range = grid_ ? std::optional(rangeOf(*grid_, place().normal)) : std::nullopt;
   // The row that reports a change must stay.
   if (range != position_range_) makePositionRow(range);
-  if (position_ != nullptr) position_->setValue(1000 * *within(*grid_, slice_).position);
+  if (position_ != nullptr) position_->setValue(1000 * *within(*grid_, place()).position);
 }
 
 void DisplayPanel::makePositionRow(const std::optional<ValueRange>& range) {
@@ -199,8 +223,8 @@ void DisplayPanel::makePositionRow(const std::optional<ValueRange>& range) {
         tr("Position of the slice along its direction, in world coordinates"));
   static_cast<QVBoxLayout*>(values_["slice"]->layout())->insertWidget(2, position_);
   connect(position_, &ValueRow::edited, this, [this](double mm) {
-    slice_.position = mm / 1000;
-    emit sliceMoved(slice_);
+    slices_[slice_] = SlicePosition{place().normal, mm / 1000};
+    emit slicesChanged();
   });
 }
 
@@ -233,15 +257,21 @@ void DisplayPanel::arrange() {
     QListWidgetItem* item = rows_[row.thing];
     const std::string thing = row.thing;
     item->setHidden((row.needs_field && !grid_) || (thing == "band" && !band_there_) ||
-                    (thing == "paint" && !paint_there_));
+                    (thing == "paint" && !paint_there_) ||
+                    (sliceOf(thing).value_or(0) > 0 && !isShown("slice")));
     if (!item->isHidden()) high += list_->sizeHintForRow(list_->row(item));
   }
   if (list_->currentItem()->isHidden()) list_->setCurrentRow(0);
   list_->setFixedHeight(high);
+  const std::size_t slice_before = slice_;
+  const auto slice = sliceOf(selected());
+  if (slice && slices_[*slice]) slice_ = *slice;
+  if (!slices_[slice_]) slice_ = 0;
   for (const auto& [thing, values] : values_) {
-    values->setVisible(thing == selected() && !rows_[thing]->isHidden());
-    values->setEnabled(isShown(thing));
+    values->setVisible(thing == (slice ? "slice" : selected()) && !rows_[thing]->isHidden());
+    values->setEnabled(isShown(selected()));
   }
+  if (slice_ != slice_before) showSlice(); // Otherwise what is being typed stays.
 }
 
 void DisplayPanel::setShown(const std::string& thing, bool on) {

@@ -19,7 +19,7 @@ namespace patina {
 // Pose of the clip plane: normal to an axis, facing the viewer, or reversed.
 enum class ClipTurn { x, y, z, viewer, flip };
 
-// A thing is a layer's name, "clip" or "paint".
+// A thing is a layer's name, "clip", "paint", or "slice2" or "slice3" for further slices.
 class DisplayPanel : public QGroupBox {
   Q_OBJECT
  public:
@@ -38,14 +38,17 @@ class DisplayPanel : public QGroupBox {
   void select(const std::string& thing); // No effect without its row.
   std::string selected() const;
   QString caption(const std::string& thing) const { return rows_.at(thing)->text(); }
-  void setSlice(const SlicePosition& place); // Sends no signal.
+  void setSlices(const Slices& slices); // Sends no signal.
+  const Slices& slices() const { return slices_; }
+  std::size_t slice() const { return slice_; } // The slice whose values the card has.
+  void moveSlice(const SlicePosition& place);  // Moves that slice.
   // While checked, a drag in the view draws the line of a profile.
   QToolButton& lineProfile() { return *line_profile_; }
 
  signals:
   void shownChanged(const std::string& thing, bool on);
   void selectionChanged();
-  void sliceMoved(const patina::SlicePosition& place);
+  void slicesChanged();
   void sliceFacing();         // Requests the plane that faces the viewer.
   void sliceHandled(bool on); // Shows the slice's handle or hides it.
   void histogramRequested();
@@ -61,7 +64,7 @@ class DisplayPanel : public QGroupBox {
   QVBoxLayout* addCard(const char* thing);
   void addClip();
   void addSlice();
-  void moveSlice(const SlicePosition& place);
+  SlicePosition place() const { return slices_[slice_].value_or(SlicePosition{}); }
   void showSlice();
   // The range depends on direction and field; nullopt: no field, no row.
   void makePositionRow(const std::optional<ValueRange>& range);
@@ -75,7 +78,8 @@ class DisplayPanel : public QGroupBox {
   QLabel* stability_note_ = nullptr;
   ValueRow* iso_ = nullptr;
   double iso_reach_ = 0; // [m]
-  SlicePosition slice_;
+  Slices slices_;
+  std::size_t slice_ = 0;
   std::optional<ValueRange> position_range_; // [m]
   std::optional<FieldGrid> grid_;            // nullopt: no field.
   bool band_there_ = false, paint_there_ = false;

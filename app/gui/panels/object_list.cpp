@@ -28,15 +28,24 @@ ObjectList::ObjectList(QWidget* parent)
   addButton<QToolButton>(buttons, "add_object", tr("+ Add…"),
                          tr("Adds a mesh or volume to the open scene"), this,
                          &ObjectList::addRequested);
-  addButton<QToolButton>(buttons, "lay_picture", tr("Picture…"),
-                         tr("Lays a picture on the selected object, as colour or as relief"), this,
-                         [this] {
-                           if (chosen() >= 0)
-                             emit pictureRequested(static_cast<std::size_t>(chosen()));
-                         });
   buttons->addStretch(1);
   remove_ = addButton<QToolButton>(buttons, "remove_object", tr("Remove"), {}, this,
                                    &ObjectList::removeChosen);
+  auto* changes = new QHBoxLayout;
+  column->addLayout(changes);
+  const auto addChange = [&](const char* name, const QString& words, const QString& tip,
+                             void (ObjectList::*request)(std::size_t)) {
+    addButton<QToolButton>(changes, name, words, tip, this, [this, request] {
+      if (chosen() >= 0) emit(this->*request)(static_cast<std::size_t>(chosen()));
+    });
+  };
+  addChange("lay_picture", tr("Picture…"),
+            tr("Lays a picture on the selected object, as colour or as relief"),
+            &ObjectList::pictureRequested);
+  addChange("object_unit", tr("Unit…"),
+            tr("Corrects the unit or the upper axis of the selected object's file"),
+            &ObjectList::unitRequested);
+  changes->addStretch(1);
 
   connect(list_, &QListWidget::currentRowChanged, this, [this] { showPose(); });
   connect(redistance_, &QCheckBox::toggled, this, [this](bool on) {

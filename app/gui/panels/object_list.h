@@ -34,6 +34,7 @@ class ObjectList : public QGroupBox {
   void edited(); // Slow to compile: runs in the background.
   void addRequested();
   void pictureRequested(std::size_t object);
+  void unitRequested(std::size_t object);
 
  private:
   int chosen() const { return list_->currentRow(); }

@@ -8,7 +8,7 @@
 #include <QTimer>
 
 #include "scene/tool_sample.h"
-#include "visualization/view/video.h"
+#include "visualization/plots/video.h"
 
 namespace patina {
 

@@ -9,6 +9,7 @@
 #include "core/numbers.h"
 #include "scene/pin.h"
 #include "scene/scene_values.h"
+#include "scene/slice_position.h"
 #include "scene/stroke.h"
 
 namespace patina {
@@ -25,6 +26,13 @@ QString wordsOfValue(const QString& piece) {
     QStringList names;
     for (const Pin& pin : parsePins(value.toStdString())) names << shownText(pin.name);
     return tr("pins %1").arg(names.join(QStringLiteral(" ")));
+  }
+  if (key.startsWith(QStringLiteral("slice"))) {
+    const SlicePosition slice = parseSlice(value.toStdString());
+    const QString name = QString(key).replace(QStringLiteral("slice"), tr("slice ")).trimmed();
+    const QString across = tr("%1 normal to %2").arg(name, shownText(directionText(slice.normal)));
+    return !slice.position ? across
+                           : tr("%1 at %2").arg(across, shownText(formatLength(*slice.position)));
   }
   const auto number = parseNumber(value.toStdString());
   if (!number) return wordsOfKeys(key) + ' ' + value;

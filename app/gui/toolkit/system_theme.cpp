@@ -6,6 +6,7 @@
 #include <QDBusPendingCallWatcher>
 #include <QDBusPendingReply>
 #include <QEvent>
+#include <QSettings>
 
 namespace patina {
 namespace {
@@ -31,10 +32,20 @@ QVariant unwrapped(QVariant value) {
 
 } // namespace
 
+QString keptTheme() {
+  return QSettings().value(QStringLiteral("theme")).toString();
+}
+
+void keepTheme(const QString& theme) {
+  QSettings().setValue(QStringLiteral("theme"), theme);
+  QEvent changed(QEvent::ThemeChange);
+  QCoreApplication::sendEvent(QCoreApplication::instance(), &changed);
+}
+
 SystemTheme::SystemTheme(QApplication& application) : SystemTheme(application, sessionBus()) {}
 
 SystemTheme::SystemTheme(QApplication& application, QDBusConnection bus)
-    : application_(application), bus_(std::move(bus)), applied_(systemTheme()) {
+    : application_(application), bus_(std::move(bus)), applied_(wanted()) {
   applyStyle(application_, applied_);
   application_.installEventFilter(this);
   if (!bus_.isConnected()) return;
@@ -68,12 +79,16 @@ bool SystemTheme::eventFilter(QObject* watched, QEvent* event) {
   return QObject::eventFilter(watched, event);
 }
 
+Theme SystemTheme::wanted() const {
+  const QString kept = keptTheme();
+  if (kept == QStringLiteral("dark")) return Theme::dark;
+  if (kept == QStringLiteral("light")) return Theme::light;
+  return preference_ == 1 ? Theme::dark : preference_ == 2 ? Theme::light : systemTheme();
+}
+
 void SystemTheme::choose() {
-  const Theme wanted = preference_ == 1   ? Theme::dark
-                       : preference_ == 2 ? Theme::light
-                                          : systemTheme();
-  if (wanted == applied_) return;
-  applied_ = wanted;
+  if (wanted() == applied_) return;
+  applied_ = wanted();
   applyStyle(application_, applied_);
 }
 

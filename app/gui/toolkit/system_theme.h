@@ -11,6 +11,10 @@
 
 namespace patina {
 
+// The theme that the user has chosen, "light" or "dark"; empty: that of the desktop.
+QString keptTheme();
+void keepTheme(const QString& theme); // A SystemTheme applies it at once.
+
 class SystemTheme : public QObject {
   Q_OBJECT
  public:
@@ -26,6 +30,7 @@ class SystemTheme : public QObject {
 
  private:
   void askPortal();
+  Theme wanted() const;
   void choose();
 
   QApplication& application_;

@@ -169,14 +169,15 @@ void MainWindow::connectFiles() {
   connect(parts_.storage->button("save_elsewhere"), &QPushButton::clicked, &saving_,
           &SaveController::saveDialog);
   connect(&feel_, &FeelController::notified, this, &MainWindow::say);
-  connect(&view_, &ViewController::colorsEdited, &edits_, &EditController::changeColors);
-  connect(&edits_, &EditController::colorsDone, &view_, &ViewController::colorsDone);
+  connect(&view_, &ViewController::editRequested, &edits_, &EditController::changeLooks);
+  connect(&edits_, &EditController::looksDone, &view_, &ViewController::editDone);
   connect(&measure_, &MeasureController::notified, this, &MainWindow::say);
   connect(&view_, &ViewController::notified, this, &MainWindow::say);
   connect(parts_.notice, &NoticeLine::opened, &desks_, [this] { desks_.open(Panel::messages); });
   connect(parts_.load_bar, &LoadBar::cancelled, &documents_, &DocumentController::cancel);
   connect(parts_.objects, &ObjectList::pictureRequested, &documents_,
           &DocumentController::layPictureDialog);
+  connect(parts_.objects, &ObjectList::unitRequested, &documents_, &DocumentController::unitDialog);
   connect(parts_.objects, &ObjectList::addRequested, &documents_,
           [this] { documents_.openDialog(true); });
 }

@@ -14,7 +14,6 @@
 #include <QVBoxLayout>
 
 #include "app/gui/aligning/align_desk.h"
-#include "app/gui/loading/up_choice.h"
 #include "app/gui/scanning/scan_desk.h"
 #include "app/gui/texturing/texture_desk.h"
 #include "app/gui/toolkit/card.h"
@@ -22,6 +21,7 @@
 #include "app/gui/toolkit/words.h"
 #include "app/gui/window/action_search.h"
 #include "app/gui/window/main_window.h"
+#include "app/gui/window/preferences_dialog.h"
 #include "core/version.h"
 #include "visualization/values/camera.h"
 
@@ -109,6 +109,22 @@ QString shortcutsText() {
       "<tr><td><b>Ctrl + R</b></td><td>record the forces, and save them</td></tr></table>");
 }
 
+// Scrolls, because the list is higher than a small screen.
+void showShortcuts(QMainWindow* window) {
+  auto* dialog = new QDialog(window);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  dialog->setWindowTitle(tr("Mouse and keys"));
+  auto* text = new QTextBrowser;
+  text->setHtml(shortcutsText());
+  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok);
+  QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
+  auto* column = new QVBoxLayout(dialog);
+  column->addWidget(text);
+  column->addWidget(buttons);
+  dialog->resize(QSize(640, 600).boundedTo(window->size()));
+  dialog->open();
+}
+
 QString signed_(ViewPreset preset) {
   QString words = shownText(name(preset));
   return words == QStringLiteral("iso") ? QMainWindow::tr("At an angle")
@@ -148,14 +164,6 @@ void addFileMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       ->setToolTip(tr("A folder of a camera's frames, poses and a probe's stream"));
   file->addMenu(parts.recent);
   file->addAction(tr("Open the toy &dinosaur"), documents, [=] { documents->openRequested({}); });
-  QAction* y_up =
-      addCheckable(*file, "y_up", tr("&Y is up in mesh files"), {},
-                   tr("Rotates meshes that you open from now on, so that their y axis points up"));
-  y_up->setChecked(rememberedUp() == UpAxis::y);
-  QObject::connect(y_up, &QAction::toggled, documents,
-                   [](bool on) { rememberUp(on ? UpAxis::y : UpAxis::z); });
-  QObject::connect(documents, &DocumentController::changed, y_up,
-                   [=] { y_up->setChecked(rememberedUp() == UpAxis::y); });
   file->addSeparator();
   QAction* save =
       file->addAction(tr("&Save"), &at.saving, &SaveController::save, QKeySequence::Save);
@@ -242,6 +250,13 @@ void addEditMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
       [=] { paint->softenBrush(1 / 1.15); });
   add(tr("Harder brush"), {QKeySequence("Shift+]"), Qt::Key_BraceRight},
       [=] { paint->softenBrush(1.15); });
+  edit->addSeparator();
+  QMainWindow* owner = &window;
+  edit->addAction(
+          tr("&Preferences…"), owner,
+          [owner] { (new PreferencesDialog(owner, [owner] { showShortcuts(owner); }))->open(); },
+          QKeySequence("Ctrl+,"))
+      ->setToolTip(tr("Theme, upper axis of mesh files, folder of file dialogs, keys"));
   bar.addActions({undo, redo});
   bar.addSeparator();
 }
@@ -333,22 +348,6 @@ void addViewMenu(QMainWindow& window, WindowParts& parts, const Controllers& at,
   bar.addAction(parts.commands[Command::record]);
   bar.widgetForAction(parts.commands[Command::record])
       ->setObjectName(QStringLiteral("record_button"));
-}
-
-// Scrolls, because the list is higher than a small screen.
-void showShortcuts(QMainWindow* window) {
-  auto* dialog = new QDialog(window);
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  dialog->setWindowTitle(tr("Mouse and keys"));
-  auto* text = new QTextBrowser;
-  text->setHtml(shortcutsText());
-  auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok);
-  QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
-  auto* column = new QVBoxLayout(dialog);
-  column->addWidget(text);
-  column->addWidget(buttons);
-  dialog->resize(QSize(640, 600).boundedTo(window->size()));
-  dialog->open();
 }
 
 void addHelpMenu(QMainWindow* window, const std::function<void()>& search) {

@@ -8,13 +8,15 @@
 
 #include "geometry/measure/face_strip.h"
 #include "geometry/measure/mesh_part.h"
+#include "geometry/measure/near_path.h"
 
 namespace patina {
 namespace {
 
 // Points on each edge, besides its ends, over which the first path is searched.
 constexpr int kEdgePoints = 7;
-constexpr std::size_t kPollEach = 1024; // rounds of a search
+constexpr std::size_t kPollEach = 1024;    // rounds of a search
+constexpr std::size_t kManyFaces = 20'000; // more are searched near a first path only
 // Largest lengths of a path over the distance of its ends, tried in turn.
 constexpr double kDetours[] = {1.25, 2, 5};
 
@@ -127,12 +129,25 @@ class EdgeSearch {
       queue_;
 };
 
+std::vector<std::int32_t> crossedFaces(const TriangleMesh& mesh, const Adjacency& neighbours,
+                                       const SurfacePoint& from, const SurfacePoint& to,
+                                       const Progress& progress) {
+  if (mesh.triangles.size() <= kManyFaces)
+    return EdgeSearch(mesh, neighbours, to).facesFrom(from, progress);
+  const MeshPart part = partOf(mesh, facesNearPath(mesh, neighbours, from, to, progress));
+  if (part.face.empty()) return {};
+  auto faces = EdgeSearch(part.mesh, adjacency(part.mesh), pointOfPart(part, to))
+                   .facesFrom(pointOfPart(part, from), progress);
+  for (std::int32_t& face : faces) face = part.face[static_cast<std::size_t>(face)];
+  return faces;
+}
+
 } // namespace
 
 std::optional<SurfacePath> geodesicPath(const TriangleMesh& mesh, const Adjacency& neighbours,
                                         const SurfacePoint& from, const SurfacePoint& to,
                                         const Progress& progress) {
-  const auto found = EdgeSearch(mesh, neighbours, to).facesFrom(from, progress);
+  const auto found = crossedFaces(mesh, neighbours, from, to, progress);
   if (found.empty()) return std::nullopt;
   const StripWalker walker(mesh, neighbours);
   auto strip = walker.joined(found);

@@ -14,6 +14,8 @@ struct MeshPart {
   std::vector<std::int32_t> face; // face of the whole mesh for each face, ascending
 };
 
+MeshPart partOf(const TriangleMesh& mesh, std::vector<std::int32_t> faces); // ascending
+
 // Returns at least the faces that have a point p with |p - a| + |p - b| <= longest [m], an
 // ellipsoid with foci a and b: no path of that length from a to b leaves it.
 MeshPart partWithin(const TriangleMesh& mesh, const Vec3& a, const Vec3& b, double longest);

@@ -49,9 +49,9 @@ double shownReach(const SurfaceField& field, const Vec3& normal) {
 struct Ink {
   vtkLookupTable* map;
   double voxel_mm, step_mm;
-  double texel;    // voxels
-  double shown;    // voxels; slightly below the band, where every cell has all its nodes
-  double edge = 0; // voxels, edge of the tinted band; 0 = none
+  double texel = 1; // voxels
+  double shown = 0; // voxels; slightly below the band, where every cell has all its nodes
+  double edge = 0;  // voxels, edge of the tinted band; 0 = none
   palette::Color tint{};
   std::optional<SliceMaterial> material{};
 
@@ -214,81 +214,144 @@ std::vector<float> refinedValues(const FieldPlane& plane, int n) {
   return values;
 }
 
-SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
-    : quad_(vtkSmartPointer<vtkPlaneSource>::New()), texture_(vtkSmartPointer<vtkTexture>::New()),
-      actor_(vtkSmartPointer<vtkActor>::New()), bar_(scalarBar("distance [mm]")),
-      plane_(vtkSmartPointer<vtkPlane>::New()) {
-  quad_->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+SliceLayer::Plane::Plane(vtkRenderer& scene)
+    : quad(vtkSmartPointer<vtkPlaneSource>::New()), texture(vtkSmartPointer<vtkTexture>::New()),
+      actor(vtkSmartPointer<vtkActor>::New()), cut(vtkSmartPointer<vtkPlane>::New()) {
+  quad->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   const vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(quad_->GetOutputPort());
-  actor_->SetMapper(mapper);
-  actor_->SetTexture(texture_);
-  actor_->GetProperty()->LightingOff();
-  texture_->InterpolateOn();
-  texture_->MipmapOn();
-  scene.AddActor(actor_);
+  mapper->SetInputConnection(quad->GetOutputPort());
+  actor->SetMapper(mapper);
+  actor->SetTexture(texture);
+  actor->GetProperty()->LightingOff();
+  texture->InterpolateOn();
+  texture->MipmapOn();
+  scene.AddActor(actor);
+}
 
+ClipPlane SliceLayer::Plane::seenFrom(const Vec3& eye) const {
+  const Vec3 origin(quad->GetOrigin()), normal(quad->GetNormal());
+  return {origin, (eye - origin).dot(normal) < 0 ? Vec3(-normal) : normal};
+}
+
+SliceLayer::SliceLayer(vtkRenderer& scene, vtkRenderer& overlay)
+    : bar_(scalarBar("distance [mm]")) {
+  for (std::size_t i = 0; i < kMaxSlices; ++i) planes_.emplace_back(scene);
   overlay.AddActor2D(bar_);
   setVisible(false);
 }
 
-void SliceLayer::update(const SurfaceField& field, const SlicePosition& place,
+void SliceLayer::update(const SurfaceField& field, const Slices& places,
                         const std::optional<TouchBand>& band,
                         const std::optional<SliceMaterial>& material, const ColorScale& scale) {
   const FieldGrid& grid = field.grid;
-  const FieldPlane plane = planeOf(field, place);
-  quad_->SetOrigin(plane.origin.x(), plane.origin.y(), plane.origin.z());
-  Vec3 corner = plane.origin + plane.across;
-  quad_->SetPoint1(corner.data());
-  corner = plane.origin + plane.up;
-  quad_->SetPoint2(corner.data());
-  origin_ = plane.origin;
-
+  std::array<FieldPlane, kMaxSlices> values;
+  std::vector<double> distances; // ascending, for a percentile
+  for (std::size_t i = 0; i < kMaxSlices; ++i) {
+    Plane& plane = planes_[i];
+    plane.is_there = i == 0 || places[i];
+    if (!plane.is_there) continue;
+    values[i] = planeOf(field, places[i].value_or(SlicePosition{}));
+    plane.shown = shownReach(field, values[i].normal);
+    if (!scale.percentile) continue;
+    const auto more = shownDistances(values[i], grid.voxel, plane.shown);
+    const auto middle = distances.insert(distances.end(), more.begin(), more.end());
+    std::inplace_merge(distances.begin(), middle, distances.end());
+  }
   const double voxel_mm = 1000 * grid.voxel;
   const double limit_mm = field.band * voxel_mm;
-  shown_ = shownReach(field, place.normal);
-  range_ = shownRange(scale, {-1e-3 * limit_mm, 1e-3 * limit_mm},
-                      scale.percentile ? shownDistances(plane, grid.voxel, shown_)
-                                       : std::vector<double>{});
+  range_ = shownRange(scale, {-1e-3 * limit_mm, 1e-3 * limit_mm}, distances);
   const auto map = colorTable(scale, StandardMap::diverging, {1e3 * range_.low, 1e3 * range_.high});
   const double reach_mm =
       std::min(limit_mm, 1e3 * std::max(std::abs(range_.low), std::abs(range_.high)));
-  const int cells = plane.columns - 1;
   Ink ink{.map = map,
           .voxel_mm = voxel_mm,
           // Lines nearer than a voxel would cover the colours.
-          .step_mm = niceStep(std::max(reach_mm, 4 * voxel_mm), 4),
-          .texel = static_cast<double>(cells) / texelsOver(cells),
-          .shown = shown_};
+          .step_mm = niceStep(std::max(reach_mm, 4 * voxel_mm), 4)};
   if (band && isStored(*band, field)) {
     ink.edge = band->edge / grid.voxel;
     ink.tint = bandColor(*band);
   }
   ink.material = material;
+  const bool several = places[1] || places[2];
+  for (std::size_t i = 0; i < kMaxSlices; ++i) {
+    Plane& plane = planes_[i];
+    if (!plane.is_there) continue;
+    const FieldPlane& at = values[i];
+    plane.quad->SetOrigin(at.origin.x(), at.origin.y(), at.origin.z());
+    Vec3 corner = at.origin + at.across;
+    plane.quad->SetPoint1(corner.data());
+    corner = at.origin + at.up;
+    plane.quad->SetPoint2(corner.data());
+    const int cells = at.columns - 1;
+    ink.texel = static_cast<double>(cells) / texelsOver(cells);
+    ink.shown = plane.shown;
+    plane.texture->SetInputData(painted(at, ink));
+    plane.actor->GetProperty()->SetOpacity(scale.opacity.value_or(1));
+    // Its transparent edge makes VTK draw the plane as translucent, which hides no other plane.
+    plane.actor->SetForceOpaque(several && scale.opacity.value_or(1) == 1);
+  }
   shows_distance_ = !material;
-  texture_->SetInputData(painted(plane, ink));
   bar_->SetLookupTable(map);
   bar_->SetLabelFormat(labelFormat(scale, reach_mm < 1    ? "%.2f"
                                           : reach_mm < 50 ? "%.1f"
                                                           : "%.0f")
                            .c_str());
-  actor_->GetProperty()->SetOpacity(scale.opacity.value_or(1));
 }
 
-ClipPlane SliceLayer::planeSeenFrom(const Vec3& eye) const {
-  const Vec3 origin(quad_->GetOrigin()), normal(quad_->GetNormal());
-  return {origin, (eye - origin).dot(normal) < 0 ? Vec3(-normal) : normal};
+std::vector<vtkPlane*> SliceLayer::cuts() {
+  std::vector<vtkPlane*> cuts;
+  for (Plane& plane : planes_)
+    if (plane.is_there) cuts.push_back(plane.cut);
+  return cuts;
 }
 
-bool SliceLayer::covers(const SurfaceField& field, const Vec3& point) const {
-  return std::abs(distanceAt(field, point)) < shown_ * field.grid.voxel;
+bool SliceLayer::turnCuts(const Vec3& eye, const SurfaceField& field) {
+  bool turned = false;
+  for (Plane& plane : planes_) {
+    const ClipPlane seen = plane.seenFrom(eye);
+    const bool positive = seen.normal.dot(Vec3(plane.quad->GetNormal())) < 0;
+    turned = turned || (plane.is_there && positive != plane.keeps_positive);
+    plane.keeps_positive = positive;
+    Vec3 inward = -seen.normal;
+    plane.cut->SetNormal(inward.data());
+    // Slightly behind the slice, because cut edges would otherwise show through its lines.
+    Vec3 origin = seen.origin + 0.35 * field.grid.voxel * inward;
+    plane.cut->SetOrigin(origin.data());
+  }
+  return turned;
+}
+
+bool SliceLayer::hides(const Vec3& point, const Vec3& eye) const {
+  return std::any_of(planes_.begin(), planes_.end(), [&](const Plane& plane) {
+    const ClipPlane seen = plane.seenFrom(eye);
+    return plane.is_there && (point - seen.origin).dot(seen.normal) > 0;
+  });
+}
+
+std::optional<SliceLayer::Hit> SliceLayer::hitAlong(const SurfaceField& field, const Vec3& eye,
+                                                    const Ray& ray,
+                                                    std::optional<Ray>& beyond) const {
+  std::optional<Hit> first;
+  beyond = ray;
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    if (!planes_[i].is_there) continue;
+    const ClipPlane plane = planes_[i].seenFrom(eye);
+    const auto part = behind(plane, ray);
+    if (beyond) beyond = behind(plane, *beyond);
+    const bool crosses = part && part->origin != ray.origin;
+    const auto depth = [&](const Vec3& point) { return (point - ray.origin).dot(ray.direction); };
+    if (!crosses || (first && depth(first->point) < depth(part->origin))) continue;
+    if (std::abs(distanceAt(field, part->origin)) < planes_[i].shown * field.grid.voxel)
+      first = Hit{i, part->origin};
+  }
+  return first;
 }
 
 void SliceLayer::setVisible(bool on) {
   // A window system may draw a frame before the first update(), and VTK fails on an empty texture.
-  const bool made = texture_->GetNumberOfInputConnections(0) > 0;
-  actor_->SetVisibility(on && made);
-  bar_->SetVisibility(on && made && shows_distance_);
+  for (Plane& plane : planes_)
+    plane.actor->SetVisibility(on && plane.is_there && plane.has_picture());
+  bar_->SetVisibility(on && planes_.front().has_picture() && shows_distance_);
 }
 
 } // namespace patina

@@ -1,6 +1,7 @@
-// Draws a plane of the field as an image in space, with a scalar bar.
+// Draws planes of the field as images in space, with one scalar bar.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,9 +17,9 @@
 #include "field/store/surface_field.h"
 #include "scene/color_scale.h"
 #include "scene/scene.h"
+#include "scene/slice_position.h"
 #include "visualization/layers/clip_layer.h"
 #include "visualization/values/paint_quantity.h"
-#include "visualization/values/slice_position.h"
 #include "visualization/values/touch_band.h"
 
 namespace patina {
@@ -52,33 +53,50 @@ struct SliceMaterial {
 
 class SliceLayer {
  public:
-  // scene: renderer of the plane; overlay: renderer of the scalar bar.
+  // scene: renderer of the planes; overlay: renderer of the scalar bar.
   SliceLayer(vtkRenderer& scene, vtkRenderer& overlay);
 
   // A band is tinted from the surface to its edge, which is a line.
-  void update(const SurfaceField& field, const SlicePosition& place,
+  void update(const SurfaceField& field, const Slices& places,
               const std::optional<TouchBand>& band = {},
               const std::optional<SliceMaterial>& material = {}, const ColorScale& scale = {});
   ValueRange range() const { return range_; } // range of the distances' colours [m]
   void setVisible(bool on);
-  // Clip plane for the surfaces, which the view places.
-  vtkPlane& plane() { return *plane_; }
   vtkScalarBarActor& bar() { return *bar_; }
-  const Vec3& origin() const { return origin_; } // a point of the plane [m]
-  // Plane of the slice with its normal towards the eye.
-  ClipPlane planeSeenFrom(const Vec3& eye) const;
-  // Returns true if the slice shows a value at this point of its plane.
-  bool covers(const SurfaceField& field, const Vec3& point) const;
+  // Clip planes for the surfaces, one for each slice, slightly behind it.
+  std::vector<vtkPlane*> cuts();
+  // Turns them so that they hide what is in front of a slice. Returns true if that changes a side.
+  bool turnCuts(const Vec3& eye, const SurfaceField& field);
+  // Returns true if the point is in front of the plane of a slice.
+  bool hides(const Vec3& point, const Vec3& eye) const;
+  // A point of a slice that shows a value there.
+  struct Hit {
+    std::size_t slice = 0;
+    Vec3 point = Vec3::Zero();
+  };
+  // Returns the first one along the ray; `beyond` becomes the part of the ray behind all planes, as
+  // seen from the eye.
+  std::optional<Hit> hitAlong(const SurfaceField& field, const Vec3& eye, const Ray& ray,
+                              std::optional<Ray>& beyond) const;
 
  private:
-  vtkSmartPointer<vtkPlaneSource> quad_;
-  vtkSmartPointer<vtkTexture> texture_;
-  vtkSmartPointer<vtkActor> actor_;
+  struct Plane {
+    explicit Plane(vtkRenderer& scene);
+    ClipPlane seenFrom(const Vec3& eye) const; // its normal is towards the eye
+    bool has_picture() const { return texture->GetNumberOfInputConnections(0) > 0; }
+
+    vtkSmartPointer<vtkPlaneSource> quad;
+    vtkSmartPointer<vtkTexture> texture;
+    vtkSmartPointer<vtkActor> actor;
+    vtkSmartPointer<vtkPlane> cut;
+    double shown = 0;      // largest |phi| that is drawn [voxels]
+    bool is_there = false; // one of the slices
+    bool keeps_positive = true;
+  };
+
+  std::vector<Plane> planes_; // kMaxSlices
   vtkSmartPointer<vtkScalarBarActor> bar_;
-  vtkSmartPointer<vtkPlane> plane_;
-  Vec3 origin_ = Vec3::Zero();
   ValueRange range_;
-  double shown_ = 0;           // largest |phi| that is drawn [voxels]
   bool shows_distance_ = true; // with its bar
 };
 

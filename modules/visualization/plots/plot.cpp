@@ -14,10 +14,12 @@
 #include <vtkDoubleArray.h>
 #include <vtkPen.h>
 #include <vtkPlotPoints.h>
+#include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkStringArray.h>
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
+#include <vtkWindowToImageFilter.h>
 
 #include "core/error.h"
 #include "visualization/values/palette.h"
@@ -51,9 +53,9 @@ PlotSeries cleaned(const Plot& plot, const PlotSeries& series) {
   return clean;
 }
 
-void setText(vtkTextProperty* text, int size, bool bold) {
+void setText(vtkTextProperty* text, double size, bool bold) {
   text->SetFontFamilyToArial();
-  text->SetFontSize(size);
+  text->SetFontSize(static_cast<int>(std::lround(size)));
   text->SetBold(bold);
   text->SetItalic(false);
   text->SetColor(palette::forVtk(palette::kText));
@@ -96,13 +98,14 @@ void placeLogTicks(vtkAxis* axis, const Range& range) {
   axis->SetCustomTickPositions(positions, labels);
 }
 
-void setAxis(vtkAxis* axis, const std::string& label, bool log, const Range& range) {
+void setAxis(vtkAxis* axis, const std::string& label, bool log, const Range& range,
+             double magnification) {
   axis->SetTitle(label);
-  setText(axis->GetTitleProperties(), 17, false);
-  setText(axis->GetLabelProperties(), 15, false);
+  setText(axis->GetTitleProperties(), 17 * magnification, false);
+  setText(axis->GetLabelProperties(), 15 * magnification, false);
   axis->GetGridPen()->SetColorF(0.88, 0.89, 0.91);
   axis->GetPen()->SetColorF(0.35, 0.38, 0.42);
-  axis->GetPen()->SetWidth(1.2F);
+  axis->GetPen()->SetWidth(static_cast<float>(1.2 * magnification));
   if (!log) {
     const double margin = range.high > range.low ? 0.04 * (range.high - range.low) : 1;
     axis->SetBehavior(vtkAxis::FIXED);
@@ -113,7 +116,8 @@ void setAxis(vtkAxis* axis, const std::string& label, bool log, const Range& ran
   placeLogTicks(axis, range);
 }
 
-void addSeries(vtkChartXY* chart, const PlotSeries& series, std::size_t index) {
+void addSeries(vtkChartXY* chart, const PlotSeries& series, std::size_t index,
+               double magnification) {
   const vtkNew<vtkTable> table;
   const vtkNew<vtkDoubleArray> x, y;
   x->SetName("x");
@@ -132,7 +136,7 @@ void addSeries(vtkChartXY* chart, const PlotSeries& series, std::size_t index) {
   line->SetInputData(table, 0, 1);
   line->GetPen()->SetColorF(color[0], color[1], color[2]);
   line->GetBrush()->SetColorF(color[0], color[1], color[2]);
-  line->SetWidth(series.line ? 2.2F : 1.0F);
+  line->SetWidth(static_cast<float>((series.line ? 2.2 : 1.0) * magnification));
   // Colours repeat with dashed lines, so that every series is distinct.
   if (series.line && index >= palette::kSeries.size())
     line->GetPen()->SetLineType(vtkPen::DASH_LINE);
@@ -140,6 +144,49 @@ void addSeries(vtkChartXY* chart, const PlotSeries& series, std::size_t index) {
   line->SetMarkerSize(9);
   line->SetLabel(series.name);
 }
+
+// A plot in an off-screen window.
+struct Chart {
+  vtkNew<vtkContextView> view;
+  vtkNew<vtkChartXY> chart;
+
+  Chart(const Plot& plot, const PictureSize& size, double magnification) {
+    checkPictureSize(size);
+    std::vector<PlotSeries> series;
+    Range x, y;
+    if (plot.from_zero) y.add(0);
+    for (const PlotSeries& given : plot.series) {
+      series.push_back(cleaned(plot, given));
+      for (const double value : series.back().x) x.add(value);
+      for (const double value : series.back().y) y.add(value);
+    }
+    if (x.low > x.high)
+      throw Error("plot '" + plot.title + "' has no value that can be drawn" +
+                  (plot.log_x || plot.log_y ? " on logarithmic axes" : ""));
+    requireDisplay();
+
+    view->GetRenderer()->SetBackground(1, 1, 1);
+    view->GetRenderWindow()->SetOffScreenRendering(1);
+    view->GetRenderWindow()->SetMultiSamples(8);
+    view->GetRenderWindow()->SetSize(size.width, size.height);
+    view->GetScene()->AddItem(chart);
+    chart->SetTitle(plot.title);
+    setText(chart->GetTitleProperties(), 20 * magnification, true);
+    setAxis(chart->GetAxis(vtkAxis::BOTTOM), plot.x_label, plot.log_x, x, magnification);
+    setAxis(chart->GetAxis(vtkAxis::LEFT), plot.y_label, plot.log_y, y, magnification);
+    std::size_t index = 0;
+    for (const PlotSeries& item : series)
+      if (!item.x.empty()) addSeries(chart, item, index++, magnification);
+    chart->SetShowLegend(index > 1);
+    vtkChartLegend* legend = chart->GetLegend();
+    legend->SetHorizontalAlignment(vtkChartLegend::RIGHT);
+    legend->SetVerticalAlignment(vtkChartLegend::TOP);
+    setText(legend->GetLabelProperties(), 15 * magnification, false);
+    legend->GetBrush()->SetColorF(1, 1, 1, 0.88);
+    legend->GetPen()->SetColorF(0.8, 0.82, 0.85);
+    view->Render();
+  }
+};
 
 } // namespace
 
@@ -172,43 +219,29 @@ Plot workPrecisionPlot(const WorkPrecisionTable& table) {
   return plot;
 }
 
-void writePlot(const Plot& plot, const std::filesystem::path& path, const PictureSize& size) {
-  checkPictureSize(size);
-  std::vector<PlotSeries> series;
-  Range x, y;
-  for (const PlotSeries& given : plot.series) {
-    series.push_back(cleaned(plot, given));
-    for (const double value : series.back().x) x.add(value);
-    for (const double value : series.back().y) y.add(value);
+PlotImage drawPlot(const Plot& plot, const PictureSize& size, double magnification) {
+  const Chart drawn(plot, size, magnification);
+  const vtkNew<vtkWindowToImageFilter> capture;
+  capture->SetInput(drawn.view->GetRenderWindow());
+  capture->ReadFrontBufferOff();
+  capture->Update();
+  PlotImage image;
+  image.pixels = capture->GetOutput();
+  vtkAxis* x = drawn.chart->GetAxis(vtkAxis::BOTTOM);
+  vtkAxis* y = drawn.chart->GetAxis(vtkAxis::LEFT);
+  image.low = x->GetUnscaledMinimum();
+  image.high = x->GetUnscaledMaximum();
+  for (std::size_t i = 0; i < 2; ++i) {
+    vtkAxis* axis = i == 0 ? x : y;
+    image.from[i] = static_cast<int>(std::lround(axis->GetPoint1()[i]));
+    image.to[i] = static_cast<int>(std::lround(axis->GetPoint2()[i]));
   }
-  if (x.low > x.high)
-    throw Error("plot '" + plot.title + "' has no value that can be drawn" +
-                (plot.log_x || plot.log_y ? " on logarithmic axes" : ""));
-  requireDisplay();
+  return image;
+}
 
-  const vtkNew<vtkContextView> view;
-  view->GetRenderer()->SetBackground(1, 1, 1);
-  view->GetRenderWindow()->SetOffScreenRendering(1);
-  view->GetRenderWindow()->SetMultiSamples(8);
-  view->GetRenderWindow()->SetSize(size.width, size.height);
-  const vtkNew<vtkChartXY> chart;
-  view->GetScene()->AddItem(chart);
-  chart->SetTitle(plot.title);
-  setText(chart->GetTitleProperties(), 20, true);
-  setAxis(chart->GetAxis(vtkAxis::BOTTOM), plot.x_label, plot.log_x, x);
-  setAxis(chart->GetAxis(vtkAxis::LEFT), plot.y_label, plot.log_y, y);
-  std::size_t index = 0;
-  for (const PlotSeries& item : series)
-    if (!item.x.empty()) addSeries(chart, item, index++);
-  chart->SetShowLegend(index > 1);
-  vtkChartLegend* legend = chart->GetLegend();
-  legend->SetHorizontalAlignment(vtkChartLegend::RIGHT);
-  legend->SetVerticalAlignment(vtkChartLegend::TOP);
-  setText(legend->GetLabelProperties(), 15, false);
-  legend->GetBrush()->SetColorF(1, 1, 1, 0.88);
-  legend->GetPen()->SetColorF(0.8, 0.82, 0.85);
-  view->Render();
-  writeWindowPng(*view->GetRenderWindow(), path);
+void writePlot(const Plot& plot, const std::filesystem::path& path, const PictureSize& size) {
+  const Chart drawn(plot, size, 1);
+  writeWindowPng(*drawn.view->GetRenderWindow(), path);
 }
 
 } // namespace patina

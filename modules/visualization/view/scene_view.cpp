@@ -63,7 +63,8 @@ struct SceneView::Impl : PictureStage {
   std::vector<bool> left_out; // objects that the mesh's actor does not draw
   std::shared_ptr<const SurfaceField> field;
   double iso = 0;
-  SlicePosition place;
+  Slices slice_places;
+  std::size_t selected_slice = 0; // has the handle
   ColorScales scales;
   std::optional<TouchBand> band;
   std::optional<ToolSample> sample;
@@ -74,7 +75,7 @@ struct SceneView::Impl : PictureStage {
   // Outdated parts; prepare() updates those that are shown.
   bool iso_stale = false, slice_stale = false, band_stale = false, nodes_stale = false;
   bool paint_stale = false, brush_stale = false;
-  bool has_stability = false, cut_keeps_positive = true;
+  bool has_stability = false;
   std::vector<vtkPlane*> cut_by; // clip planes of the surfaces
 
   Box3 mesh_box; // empty without a mesh
@@ -218,23 +219,12 @@ void SceneView::Impl::applyVisibility() {
   iso_actor->GetProperty()->SetBackfaceCulling(shell);
 }
 
-// Removes the half in front of the slice, which would hide it, and everything in front of the clip
-// plane.
+// Removes what is in front of a slice, which would hide it, or of the clip plane.
 void SceneView::Impl::cutAt() {
   std::vector<vtkPlane*> planes;
   if (sliceShown()) {
-    vtkPlane& plane = slice.plane();
-    const Vec3 eye(camera().GetPosition());
-    const Vec3 normal = place.normal;
-    const bool keeps_positive = (eye - slice.origin()).dot(normal) < 0;
-    Vec3 inward = keeps_positive ? normal : Vec3(-normal);
-    plane.SetNormal(inward.data());
-    // Slightly behind the slice, because cut edges would otherwise show through its lines.
-    Vec3 origin = slice.origin() + (keeps_positive ? 1 : -1) * 0.35 * field->grid.voxel * normal;
-    plane.SetOrigin(origin.data());
-    dirty = dirty || keeps_positive != cut_keeps_positive;
-    cut_keeps_positive = keeps_positive;
-    planes.push_back(&plane);
+    dirty = slice.turnCuts(Vec3(camera().GetPosition()), *field) || dirty;
+    planes = slice.cuts();
   }
   if (clip) planes.push_back(&clip->cut());
   if (planes == cut_by) return;
@@ -268,7 +258,8 @@ void SceneView::Impl::fitArrow(const Box3& box, std::vector<Vec3>& points, doubl
 
 std::optional<ClipPlane> SceneView::Impl::slicePlane() const {
   if (!sliceShown()) return std::nullopt;
-  const SlicePosition there = within(field->grid, place);
+  const SlicePosition there =
+      within(field->grid, slice_places[selected_slice].value_or(SlicePosition{}));
   const Vec3 middle = gridBox().center();
   return ClipPlane{middle + (*there.position - there.normal.dot(middle)) * there.normal,
                    there.normal};
@@ -428,9 +419,11 @@ void SceneView::setIso(double iso) {
   my_->dirty = true;
 }
 
-void SceneView::setSlice(const SlicePosition& place) {
-  my_->place = place;
-  my_->slice_stale = my_->dirty = true;
+void SceneView::setSlices(const Slices& places, std::size_t selected) {
+  if (places != my_->slice_places) my_->slice_stale = true;
+  my_->slice_places = places;
+  my_->selected_slice = selected;
+  my_->dirty = true;
 }
 
 void SceneView::setClip(const std::optional<ClipPlane>& plane) {
@@ -534,25 +527,18 @@ std::optional<Front> SceneView::frontAlong(const Ray& view_ray) const {
   if (!my_->field) return std::nullopt;
   std::optional<Ray> rest = view_ray;
   if (my_->clip) rest = behind(my_->clip->plane(), view_ray);
-  if (!rest || !my_->on(Layer::slice)) return rest ? my_->surfaceAlong(*rest) : std::nullopt;
-  // Nothing is drawn in front of the slice's plane.
-  const ClipPlane plane = my_->slice.planeSeenFrom(view_ray.origin);
-  const auto hidden = behind(plane, *rest);
-  if (!hidden) return std::nullopt;
-  const bool crosses = hidden->origin != rest->origin;
-  if (crosses && my_->slice.covers(*my_->field, hidden->origin))
-    return Front{Layer::slice, hidden->origin};
-  return my_->surfaceAlong(*hidden);
+  if (rest && my_->on(Layer::slice)) // nothing is drawn in front of a slice's plane
+    if (const auto hit = my_->slice.hitAlong(*my_->field, view_ray.origin, Ray(*rest), rest))
+      return Front{Layer::slice, hit->point, hit->slice};
+  return rest ? my_->surfaceAlong(*rest) : std::nullopt;
 }
 
 std::optional<Vec3> SceneView::vertexNear(const Ray& view_ray, const Ray& reach) const {
   if (!my_->mesh || !my_->field) return std::nullopt;
   const auto isHidden = [&](const Vec3& p) {
-    const auto cuts = [&](const ClipPlane& plane) {
-      return (p - plane.origin).dot(plane.normal) > 0;
-    };
-    if (my_->clip && cuts(my_->clip->plane())) return true;
-    if (my_->on(Layer::slice) && cuts(my_->slice.planeSeenFrom(view_ray.origin))) return true;
+    if (my_->clip && (p - my_->clip->plane().origin).dot(my_->clip->plane().normal) > 0)
+      return true;
+    if (my_->on(Layer::slice) && my_->slice.hides(p, view_ray.origin)) return true;
     // Rounded by the field, the surface lies up to two voxels before a vertex.
     const bool parallel = (reach.direction - view_ray.direction).norm() < 1e-12;
     Ray sight = view_ray;
@@ -666,7 +652,7 @@ bool SceneView::prepare() {
     std::optional<SliceMaterial> material;
     if (const auto channel = my_->slicedMaterial())
       material = SliceMaterial{&my_->painted, *channel, my_->paint.colors()};
-    my_->slice.update(*my_->field, my_->place, my_->bandShown() ? my_->band : std::nullopt,
+    my_->slice.update(*my_->field, my_->slice_places, my_->bandShown() ? my_->band : std::nullopt,
                       material, scaleOf(my_->scales, "slice"));
     my_->slice_stale = false;
   }

@@ -12,6 +12,7 @@
 #include "field/store/surface_field.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "scene/scene.h"
+#include "scene/slice_position.h"
 #include "scene/tool_sample.h"
 #include "visualization/layers/annotation_layer.h"
 #include "visualization/layers/brush_cursor.h"
@@ -19,7 +20,6 @@
 #include "visualization/layers/mirror_layer.h"
 #include "visualization/layers/paint_layer.h"
 #include "visualization/values/figure.h"
-#include "visualization/values/slice_position.h"
 #include "visualization/values/touch_band.h"
 #include "visualization/values/view_options.h"
 
@@ -37,6 +37,7 @@ struct HoveredPart {
 struct Front {
   Layer layer = Layer::mesh; // mesh (also where paint or stability is drawn), iso or slice
   Vec3 point = Vec3::Zero(); // [m]
+  std::size_t slice = 0;     // its number from 0, if it is a slice
 };
 
 class SceneView {
@@ -51,11 +52,11 @@ class SceneView {
   vtkRenderer& renderer();
 
   // A layer without data shows nothing. Neither call moves the camera; see fit().
-  void setMesh(std::shared_ptr<const TriangleMesh> mesh);   // nullptr = none
-  void setField(std::shared_ptr<const SurfaceField> field); // nullptr = none
-  void setIso(double iso);                                  // [m]
-  void setSlice(const SlicePosition& place);
-  // Plane of the slice; its origin is nearest to the middle of the field. Nullopt: not shown.
+  void setMesh(std::shared_ptr<const TriangleMesh> mesh);         // nullptr = none
+  void setField(std::shared_ptr<const SurfaceField> field);       // nullptr = none
+  void setIso(double iso);                                        // [m]
+  void setSlices(const Slices& places, std::size_t selected = 0); // the selected one has a handle
+  // Plane of that slice; its origin is nearest to the middle of the field. Nullopt: not shown.
   std::optional<ClipPlane> slicePlane() const;
   void setSliceHandle(bool on);
   // Hides surfaces in front of the plane and shows its handle; nullopt: no clipping.

@@ -1,4 +1,4 @@
-#include "visualization/values/slice_position.h"
+#include "scene/slice_position.h"
 
 #include <array>
 #include <cmath>
@@ -36,7 +36,7 @@ Vec3 parseDirection(std::string_view text) {
   }
   const double length = direction.norm();
   if (!(length > 0 && std::isfinite(length))) refuseDirection(text);
-  return direction / length;
+  return std::abs(length - 1) < 1e-12 ? direction : Vec3(direction / length);
 }
 
 } // namespace
@@ -46,6 +46,8 @@ SlicePosition parseSlice(std::string_view text) {
   const auto colon = text.find(':');
   slice.normal = parseDirection(text.substr(0, colon));
   if (colon != std::string_view::npos) slice.position = parseLength(text.substr(colon + 1));
+  if (slice.position && !std::isfinite(*slice.position))
+    throw Error("'" + std::string(text) + "': the position must be finite");
   return slice;
 }
 
@@ -59,6 +61,14 @@ std::string directionText(const Vec3& normal) {
   std::snprintf(text.data(), text.size(), "%.4g, %.4g, %.4g", normal.x() + 0.0, normal.y() + 0.0,
                 normal.z() + 0.0);
   return text.data();
+}
+
+std::string format(const SlicePosition& slice) {
+  const Vec3& n = slice.normal;
+  std::string text = directionText(n);
+  if (text.find(',') != std::string::npos)
+    text = formatNumber(n.x()) + "," + formatNumber(n.y()) + "," + formatNumber(n.z());
+  return text + (slice.position ? ":" + formatNumber(*slice.position) : "");
 }
 
 } // namespace patina

@@ -1,4 +1,4 @@
-// Replays a recording in a view and writes it as a video.
+// Replays a recording in a view, with its force over time beside it, and writes it as a video.
 #pragma once
 
 #include <filesystem>
@@ -20,8 +20,8 @@ Figure withEvenSides(Figure figure); // a video has no others
 class VideoWriter {
  public:
   // A Theora video (.ogv) in real time. Sides of the figure are made even; its background must not
-  // be transparent. Of each frame's time the last sample is shown. Throws Error for another
-  // extension, without samples and as drawFigure() does; FileError.
+  // be transparent. The plot takes the right third. Of each frame's time the last sample is shown.
+  // Throws Error for another extension, without samples and as drawFigure() does; FileError.
   VideoWriter(SceneView& view, std::vector<ToolSample> samples, Figure figure,
               const std::filesystem::path& path);
   ~VideoWriter();

@@ -1,4 +1,4 @@
-#include "visualization/view/video.h"
+#include "visualization/plots/video.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include <vtkOggTheoraWriter.h>
 
 #include "core/error.h"
+#include "visualization/plots/replay_plot.h"
 #include "visualization/view/figure_stage.h"
 
 namespace patina {
@@ -23,6 +24,15 @@ Figure withEvenSides(Figure figure) {
 }
 
 namespace {
+
+int plotWidth(const Figure& figure) {
+  return figure.width / 3;
+}
+
+Figure besidePlot(Figure figure) {
+  figure.width -= plotWidth(figure);
+  return figure;
+}
 
 // Returns whether a file ends with the last page of an Ogg stream. The writer does not notice a
 // full disk.
@@ -51,6 +61,7 @@ struct VideoWriter::Impl {
   SceneView& view;
   std::vector<ToolSample> samples;
   std::filesystem::path path, partial; // the same folder
+  ReplayPlot plot;
   FigureStage stage;
   vtkNew<vtkOggTheoraWriter> writer;
   int frames = 0, written = 0;
@@ -59,7 +70,8 @@ struct VideoWriter::Impl {
   Impl(SceneView& drawn, std::vector<ToolSample> shown, const Figure& figure,
        std::filesystem::path file)
       : view(drawn), samples(std::move(shown)), path(std::move(file)), partial(path),
-        stage(drawn, figure) {
+        plot(samples, {plotWidth(figure), figure.height}, figure.magnification),
+        stage(drawn, besidePlot(figure)) {
     partial.replace_filename("." + path.stem().string() + "-" + std::to_string(getpid()) + ".ogv");
     const double seconds = samples.back().t - samples.front().t;
     frames = 1 + static_cast<int>(std::floor(seconds * kVideoFrameRate));
@@ -111,9 +123,10 @@ bool VideoWriter::writeNext() {
   const double time =
       my_->samples.front().t + static_cast<double>(my_->written) / kVideoFrameRate + 1e-9;
   while (my_->next < my_->samples.size() && my_->samples[my_->next].t <= time) ++my_->next;
-  my_->view.setTool(my_->samples[std::max<std::size_t>(1, my_->next) - 1]);
+  const ToolSample& now = my_->samples[std::max<std::size_t>(1, my_->next) - 1];
+  my_->view.setTool(now);
   my_->view.prepare();
-  my_->add(my_->stage.draw());
+  my_->add(my_->plot.beside(*my_->stage.draw(), now));
   if (++my_->written < my_->frames) return true;
   my_->writer->End();
   if (!endsAsOgg(my_->partial)) my_->fail();

@@ -1,6 +1,8 @@
-// Position of a slice.
+// Positions of the slices of a picture.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +20,12 @@ struct SlicePosition {
 
 // Parses a direction, "x", "-z" or "0,1,1", and then a position, "0,1,1:12.5mm". Throws Error.
 SlicePosition parseSlice(std::string_view text);
-std::string directionText(const Vec3& normal); // "y" or "0, 0.7071, 0.7071"
+std::string directionText(const Vec3& normal);  // "y" or "0, 0.7071, 0.7071"
+std::string format(const SlicePosition& slice); // such a text, in metres and with all digits
+
+// The first slice is always there, through the middle unless it has a position; an absent second or
+// third is not drawn.
+inline constexpr std::size_t kMaxSlices = 3;
+using Slices = std::array<std::optional<SlicePosition>, kMaxSlices>;
 
 } // namespace patina
