@@ -14,9 +14,9 @@
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/registered_file.h"
+#include "acquisition/printing/printed_rig.h"
 #include "acquisition/simulation/simulated_scan.h"
 #include "acquisition/simulation/simulated_streams.h"
-#include "acquisition/tracking/marker_code.h"
 #include "core/csv.h"
 #include "core/decompose.h"
 #include "core/error.h"
@@ -262,7 +262,7 @@ void scan(Demo& demo, Progress& progress) {
   demo.camera_from_object = camera_from_plane * demo.object.plane_from_object;
   demo.rig.accelerometers = true;
   demo.rig.gravity = camera_from_plane.linear() * kGravity;
-  const std::vector<RigMarker> cube = markerCube(kFamily, markerFamily(kFamily).side, kCubeEdge);
+  const std::vector<RigMarker> cube = printedRig({.family = kFamily}).markers;
   std::uint32_t seed = demo.seed * 100;
   for (const DemoMaterial& material : demo.object.materials)
     demo.scans.push_back(

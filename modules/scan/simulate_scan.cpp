@@ -2,9 +2,9 @@
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/scan_tables.h"
+#include "acquisition/printing/printed_rig.h"
 #include "acquisition/simulation/mesh_strokes.h"
 #include "acquisition/simulation/simulated_surface.h"
-#include "acquisition/tracking/marker_code.h"
 #include "core/decompose.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -88,8 +88,7 @@ SimulateScanReport simulateScan(const SimulateScanOptions& options, Progress& pr
   stream.clock_offset = options.clock_offset;
   stream.clock_skew = options.clock_skew;
   const std::vector<RigMarker> cube =
-      options.frames ? markerCube(options.family, markerFamily(options.family).side, kCubeEdge)
-                     : std::vector<RigMarker>();
+      options.frames ? printedRig({.family = options.family}).markers : std::vector<RigMarker>();
   rig.accelerometers = true;
   rig.gyroscope = options.gyroscope;
   const std::vector<RigMarker> real_cube = madeByHand(cube, options.made, options.seed + 2);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "acquisition/printing/printed_rig.h"
 #include "acquisition/simulation/simulated_rig.h"
 #include "acquisition/tracking/lens.h"
 #include "acquisition/tracking/marker_residual.h"
@@ -23,7 +24,7 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
 struct WavedRig {
-  std::vector<RigMarker> nominal = markerCube("4x4_50", 4, 0.036), real;
+  std::vector<RigMarker> nominal = printedRig({}).markers, real;
   WavedProbe probe;
   Camera camera = test::smallCamera();
   std::vector<RigView> views;

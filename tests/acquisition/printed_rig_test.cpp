@@ -21,6 +21,7 @@ const RigShape kShapes[] = {RigShape::cube, RigShape::pen, RigShape::dodecahedro
 RigPlan planOf(RigShape shape) {
   RigPlan plan;
   plan.shape = shape;
+  plan.size = 0.03;
   return plan;
 }
 
@@ -84,7 +85,7 @@ TEST(PrintedRig, MarkersLieOnTheirFacesAndFaceOutward) {
 
 TEST(PrintedRig, RefusesWhatDoesNotFit) {
   RigPlan plan;
-  plan.bore = 0.03;
+  plan.bore = 0.033;
   EXPECT_THROW(printedRig(plan), Error);
   plan = {};
   plan.tip = 0.02;

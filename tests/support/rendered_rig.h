@@ -1,6 +1,7 @@
 // Frames of a marker cube in known poses.
 #pragma once
 
+#include <numbers>
 #include <random>
 
 #include "acquisition/simulation/simulated_frames.h"
@@ -39,10 +40,31 @@ inline Camera fisheyeCamera() {
   return camera;
 }
 
+// A cube whose markers 0 to 4 are on the faces +z, -y, +y, +x and -x, each with its margin of a
+// bit.
+inline std::vector<RigMarker> turnedCube(const std::string& family, int side, double edge) {
+  constexpr double kQuarter = std::numbers::pi / 2;
+  const auto turn = [](double angle, const Vec3& axis) {
+    return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  };
+  const Eigen::Matrix3d faces[] = {Eigen::Matrix3d::Identity(), turn(kQuarter, Vec3::UnitX()),
+                                   turn(-kQuarter, Vec3::UnitX()), turn(kQuarter, Vec3::UnitY()),
+                                   turn(-kQuarter, Vec3::UnitY())};
+  std::vector<RigMarker> markers;
+  for (const Eigen::Matrix3d& face : faces) {
+    RigMarker marker{family, static_cast<int>(markers.size()), edge * (side + 2) / (side + 4),
+                     Pose::Identity()};
+    marker.probe_from_marker.linear() = face;
+    marker.probe_from_marker.translation() = face * Vec3(0, 0, edge / 2);
+    markers.push_back(marker);
+  }
+  return markers;
+}
+
 struct RenderedRig {
   RenderedRig(const Camera& lens, const std::string& name, double edge = 0.04)
       : camera(lens), family(&markerFamily(name)),
-        markers(markerCube(name, family->side, edge)), books{CodeBook(*family, {0, 1, 2, 3, 4})},
+        markers(turnedCube(name, family->side, edge)), books{CodeBook(*family, {0, 1, 2, 3, 4})},
         renderer(camera, printed()) {}
 
   std::vector<PrintedMarker> printed() const {

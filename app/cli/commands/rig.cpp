@@ -105,7 +105,7 @@ Command rigCommand() {
                     {"--shape", "SHAPE", "", "cube",
                      "cube (5 markers), pen (a hexagonal prism, 13) or dodecahedron (11).",
                      parsedInto(plan.shape, parseShape)},
-                    {"--size", "LENGTH", "m", "30 mm", "Side of a marker with its white margin.",
+                    {"--size", "LENGTH", "m", "36 mm", "Side of a marker with its white margin.",
                      numberInto(5e-3, 0.18, plan.size, NumberKind::length)},
                     {"--bore", "LENGTH", "m", "10 mm", "Diameter of the pen.",
                      numberInto(1e-3, 0.1, plan.bore, NumberKind::length)},

@@ -7,6 +7,7 @@
 
 #include "acquisition/calibration/calibrate_rig.h"
 #include "acquisition/calibration/pivot.h"
+#include "acquisition/printing/printed_rig.h"
 #include "acquisition/simulation/simulated_frames.h"
 #include "acquisition/simulation/simulated_pivot.h"
 #include "acquisition/simulation/simulated_rig.h"
@@ -55,7 +56,7 @@ Pose somePose(std::mt19937& random, double distance) {
 WorkPrecisionRow measured(const Setting& setting, int frames) {
   const Camera camera = cameraOf(setting);
   const MarkerFamily& family = markerFamily(setting.family);
-  const std::vector<RigMarker> rig = markerCube(setting.family, family.side, kEdge);
+  const std::vector<RigMarker> rig = printedRig({.size = kEdge, .family = setting.family}).markers;
   std::vector<PrintedMarker> printed;
   std::vector<int> ids;
   for (const RigMarker& marker : rig) {
@@ -195,7 +196,7 @@ struct RigTrial {
 RigTrial calibrated(const HandmadeRig& made, double seconds, std::uint32_t seed) {
   constexpr double kRate = 15, kCorner = 0.04; // [Hz], [px]
   const Camera camera = cameraOf({});
-  const std::vector<RigMarker> nominal = markerCube("4x4_50", 4, kEdge),
+  const std::vector<RigMarker> nominal = printedRig({.size = kEdge}).markers,
                                real = madeByHand(nominal, made, seed);
   WavedProbe probe;
   probe.seconds = seconds;

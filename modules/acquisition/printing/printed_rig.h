@@ -17,9 +17,9 @@ enum class RigShape {
 
 struct RigPlan {
   RigShape shape = RigShape::cube;
-  double size = 0.03; // side of a marker with its white margin, one bit wide [m]
-  double bore = 0.01; // diameter of the pen that is pushed into the holder [m]
-  double tip = 0.12;  // distance of the pen's tip from the body's middle [m]
+  double size = 0.036; // side of a marker with its white margin, one bit wide [m]
+  double bore = 0.01;  // diameter of the pen that is pushed into the holder [m]
+  double tip = 0.12;   // distance of the pen's tip from the body's middle [m]
   std::string family = "4x4_50";
 };
 

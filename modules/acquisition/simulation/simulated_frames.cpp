@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -233,25 +232,6 @@ namespace {
 constexpr int kMoments = 4; // per exposure
 
 } // namespace
-
-std::vector<RigMarker> markerCube(const std::string& family, int side, double edge) {
-  constexpr double kQuarter = std::numbers::pi / 2;
-  const auto turn = [](double angle, const Vec3& axis) {
-    return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-  };
-  const Eigen::Matrix3d faces[] = {Eigen::Matrix3d::Identity(), turn(kQuarter, Vec3::UnitX()),
-                                   turn(-kQuarter, Vec3::UnitX()), turn(kQuarter, Vec3::UnitY()),
-                                   turn(-kQuarter, Vec3::UnitY())};
-  std::vector<RigMarker> markers;
-  for (const Eigen::Matrix3d& face : faces) {
-    RigMarker marker{family, static_cast<int>(markers.size()), edge * (side + 2) / (side + 4),
-                     Pose::Identity()};
-    marker.probe_from_marker.linear() = face;
-    marker.probe_from_marker.translation() = face * Vec3(0, 0, edge / 2);
-    markers.push_back(marker);
-  }
-  return markers;
-}
 
 ProbeMotion motionOf(const SimulatedHand& hand, const ProbeModel& probe,
                      const Pose& camera_from_world) {

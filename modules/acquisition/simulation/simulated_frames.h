@@ -58,10 +58,6 @@ class FrameRenderer {
   std::vector<double> ripples_; // background ripple of each pixel
 };
 
-// Returns a cube about the probe's origin with markers 0 to 4 of a family on all faces except that
-// towards the tip; margins are one bit wide. `edge` [m].
-std::vector<RigMarker> markerCube(const std::string& family, int side, double edge);
-
 struct CaptureSettings {
   double rate = 30;            // [Hz]
   double exposure = 4e-3;      // centered at each frame's time, with motion blur [s]

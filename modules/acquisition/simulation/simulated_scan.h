@@ -15,9 +15,6 @@ Camera usualCamera();
 // Returns camera_from_plane, 0.4 m from a point `over` the box's center [m]; z is up.
 Pose cameraOver(const Box3& box, double over);
 
-// Marker cube of simulated probes.
-inline constexpr double kCubeEdge = 0.036; // [m]
-
 // Writes frames/, frames.csv and camera.yml of a rig as it really is; returns the number of frames.
 // Throws FileError, Cancelled; Error for an unknown family.
 std::size_t writeFrames(const std::filesystem::path& folder, const Camera& camera,
