@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vtkPNGWriter.h>
+
 #include "core/error.h"
 #include "core/file.h"
 #include "geometry/mesh/shapes.h"
@@ -81,10 +83,14 @@ TEST_F(VideoTest, HasAFrameEvery40MillisecondsAndAppearsWhenItIsComplete) {
 TEST_F(VideoTest, HasTheReplayPlotBesideThePicture) {
   const std::vector<ToolSample> samples = pressingDown();
   const ReplayPlot plot(samples, {160, 240}, 1);
-  const vtkNew<vtkImageData> picture;
-  picture->SetDimensions(200, 240, 1);
-  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  std::fill_n(static_cast<unsigned char*>(picture->GetScalarPointer()), 3 * 200 * 240, 7);
+  const auto blank = [](int wide, int high) {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->SetDimensions(wide, high, 1);
+    image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    std::fill_n(static_cast<unsigned char*>(image->GetScalarPointer()), 3 * wide * high, 7);
+    return image;
+  };
+  const auto picture = blank(200, 240);
   const auto isColor = [](const unsigned char* pixel, const palette::Color& color) {
     bool all = true;
     for (std::size_t c = 0; c < 3; ++c) all = all && std::abs(pixel[c] - 255 * color[c]) < 30;
@@ -112,6 +118,12 @@ TEST_F(VideoTest, HasTheReplayPlotBesideThePicture) {
   EXPECT_NEAR(lines[1] - lines[0], axis / 4, 1);
   EXPECT_NEAR(lines[2] - lines[0], axis / 2, 1);
   const auto frame = plot.beside(*picture, samples[0]);
+  if (const char* keep = std::getenv("PATINA_KEEP_PICTURES")) {
+    const vtkNew<vtkPNGWriter> writer;
+    writer->SetFileName((std::filesystem::path(keep) / "replay_plot.png").c_str());
+    writer->SetInputData(ReplayPlot(samples, {320, 540}, 1).beside(*blank(640, 540), samples[700]));
+    writer->Write();
+  }
   int highest_x = 0;
   for (int y = 239; y > 0 && highest_x == 0; --y)
     for (int x = 200; x < 360; ++x) {
