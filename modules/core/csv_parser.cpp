@@ -190,7 +190,11 @@ bool CsvParser::findColumn(std::size_t wanted, std::vector<Cell>& cells, std::st
     const std::optional<Unit> own_unit = parseUnit(own.unit.value_or(""));
     const std::string column = "column " + inQuotes(cell.name);
     if (same) {
-      if (!found || found->name != name) found = &cell;
+      if (found && found->name == name) {
+        cause = "the column " + inQuotes(name) + " stands twice";
+        return false;
+      }
+      found = &cell;
       found->multiplier = found->divisor = 1;
     } else if (heading.unit && !own.unit) {
       cause = column + " has no unit: write '" + name + "' or another unit";

@@ -39,6 +39,17 @@ TEST(Csv, NamesTheLineOfAFault) {
   EXPECT_TRUE(csvError("").starts_with("tip.csv: is empty"));
 }
 
+TEST(Csv, NamesAColumnThatStandsTwice) {
+  try {
+    parseCsv("x,x,y\n1,2,3\n", "table.csv", {"x", "y"});
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("the column 'x' stands twice"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(parseCsv("x,z,z\n1,2,3\n", "table.csv", {"x"}).rows.size(), 1U); // not needed
+}
+
 TEST(Csv, NamesADecimalCommaAsSuch) {
   const std::string header = "t [s],x [m],y [m],z [m]\n";
   EXPECT_NE(csvError(header + "0,1,1,5,2,5,3,5\n").find("decimal comma"), std::string::npos);

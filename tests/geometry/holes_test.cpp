@@ -74,6 +74,26 @@ TEST(Holes, AreReportedForAnOpenBoxAndARoom) {
   EXPECT_TRUE(openParts(sheet(0.1, 0.1, 5)).holes.empty()); // no hole is closed
 }
 
+// The centroid of an L with long legs lies outside of it.
+TEST(Holes, AreReportedWhoseCentroidLiesOffThem) {
+  const std::vector<Vec3> ell{{0, 0, 0},       {0.05, 0, 0},    {0.05, 0.01, 0},
+                              {0.01, 0.01, 0}, {0.01, 0.05, 0}, {0, 0.05, 0}};
+  TriangleMesh prism;
+  for (const double z : {0., 0.03})
+    for (const Vec3& p : ell) prism.positions.push_back(p + Vec3(0, 0, z));
+  for (std::int32_t i = 0; i < 6; ++i) {
+    const std::int32_t j = (i + 1) % 6;
+    prism.triangles.push_back({i, j, i + 6});
+    prism.triangles.push_back({j, j + 6, i + 6});
+  }
+  for (const Triangle& t : {Triangle{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 5, 4}})
+    prism.triangles.push_back(t);
+  const OpenParts found = openParts(prism);
+  ASSERT_EQ(found.holes.size(), 1U);
+  const double at = (5e-4 * 0.025 + 4e-4 * 0.005) / 9e-4;
+  expectHole(found.holes[0], 9e-4, Vec3(at, at, 0.03), 1e-9);
+}
+
 TEST(Holes, ExcludeGapsBetweenLooseTriangles) {
   const TriangleMesh open =
       without(box(Vec3(0.1, 0.08, 0.06), 40), [](const Vec3& p) { return p.z() > 0.0299; });
@@ -92,8 +112,7 @@ TEST(Holes, ExcludeACrackAroundABody) {
   const TriangleMesh cracked = joined(half(1), half(-1));
   EXPECT_FALSE(openParts(cracked).any());
   EXPECT_TRUE(openParts(cracked).holes.empty());
-  const TriangleMesh cut =
-      without(icosphere(0.04, 20), [](const Vec3& p) { return p.z() > 0.02; });
+  const TriangleMesh cut = without(icosphere(0.04, 20), [](const Vec3& p) { return p.z() > 0.02; });
   EXPECT_EQ(openParts(cut).holes.size(), 1U);
 }
 

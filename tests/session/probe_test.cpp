@@ -47,6 +47,24 @@ TEST(ProbeAt, GivesDistanceAndRadialGradientOfABall) {
   }
 }
 
+// Two boxes of one mesh share a wall, which is inside the body that they form.
+TEST(HapticTriangles, LeaveOutAWallBetweenTwoBodies) {
+  const TriangleMesh one = box(Vec3::Constant(0.02));
+  TriangleMesh other = one;
+  for (Vec3& p : other.positions) p.x() += 0.02;
+  Scene scene;
+  scene.field.resolution = 60;
+  scene.objects = {
+      {"pair", std::make_shared<const TriangleMesh>(joined(one, other)), Pose::Identity()}};
+  Progress progress;
+  const auto compiled = compile(scene, progress);
+  const UnionSurface felt = hapticTriangles(*compiled, progress);
+  EXPECT_EQ(felt.mesh.triangles.size(), 20U);
+  EXPECT_EQ(felt.face.size(), 20U);
+  const TriangleTree tree(felt.mesh);
+  EXPECT_NEAR(tree.closestPoint(Vec3(0.01, 0, 0)).distance, 0.01, 1e-12);
+}
+
 TEST(ProbeAt, IsExactBeyondTheBandIfTheNearestPointIsKnown) {
   const auto scene = compiledBall();
   const TriangleTree tree(*scene->mesh);

@@ -20,7 +20,8 @@ double voxelFor(double longest, const FieldSpec& spec) {
   if (spec.resolution <= 2 * spec.band + 2)
     throw Error("field: resolution " + std::to_string(spec.resolution) +
                 " leaves no room for the shape between two bands of " + formatNumber(spec.band) +
-                " voxels; use more than " + formatNumber(2 * spec.band + 2));
+                " voxels; use more than " + formatNumber(2 * spec.band + 2) +
+                ", or less tip radius, offset and relief, which widen the band");
   if (!(longest > 0)) throw Error("field: the shape has no size; give the voxel instead");
   return longest / (spec.resolution - 2 * spec.band);
 }

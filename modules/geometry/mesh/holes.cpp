@@ -205,19 +205,28 @@ class LeastTriangulation {
       }
   }
 
-  // Sums area and area times centroid of the triangles.
-  void sum(double& area, Vec3& moment) const {
+  // Sums area and area times centroid of the triangles. Returns the centroid of the largest.
+  Vec3 sum(double& area, Vec3& moment) const {
+    double largest = 0;
+    Vec3 middle = Vec3::Zero();
     std::vector<std::array<std::size_t, 2>> chords{{0, n_ - 1}};
     while (!chords.empty()) {
       const auto [i, j] = chords.back();
       chords.pop_back();
       if (j - i < 2) continue;
       const std::size_t k = apex_[i * n_ + j];
-      area += areaOf(i, k, j);
-      moment += areaOf(i, k, j) * (loop_[i] + loop_[k] + loop_[j]) / 3;
+      const double own = areaOf(i, k, j);
+      const Vec3 centroid = (loop_[i] + loop_[k] + loop_[j]) / 3;
+      area += own;
+      moment += own * centroid;
+      if (own > largest) {
+        largest = own;
+        middle = centroid;
+      }
       chords.push_back({i, k});
       chords.push_back({k, j});
     }
+    return middle;
   }
 
  private:
@@ -301,14 +310,17 @@ Hole spanned(const std::vector<Vec3>& loop) {
   double off = 0;
   for (const Vec3& p : loop) off = std::max(off, std::abs(normal.dot(p - mean)));
   Vec3 moment = Vec3::Zero(); // relative to the mean
+  std::vector<Vec3> some = thinned(loop);
+  for (Vec3& p : some) p -= mean;
+  double area = 0;
+  hole.on = mean + LeastTriangulation(some).sum(area, moment);
   if (off <= kFlatHole * std::sqrt(across.norm())) {
     hole.area = across.norm();
+    moment.setZero();
     for (std::size_t i = 0; i < loop.size(); ++i)
       moment += 0.5 * normal.dot((loop[i] - mean).cross(next(i))) * (loop[i] - mean + next(i)) / 3;
   } else {
-    std::vector<Vec3> some = thinned(loop);
-    for (Vec3& p : some) p -= mean;
-    LeastTriangulation(some).sum(hole.area, moment);
+    hole.area = area;
   }
   hole.centre = hole.area > 0 ? Vec3(mean + moment / hole.area) : mean;
   return hole;

@@ -45,7 +45,8 @@ ConnectedParts connectedParts(const TriangleMesh& mesh, double reach);
 
 struct Hole {
   double area = 0;            // area of a spanning surface [m^2]
-  Vec3 centre = Vec3::Zero(); // centroid of that surface
+  Vec3 centre = Vec3::Zero(); // centroid of that surface, which may lie off it
+  Vec3 on = Vec3::Zero();     // a point in its middle: the centroid of its largest triangle
   std::size_t edges = 0;
 };
 

@@ -213,13 +213,13 @@ std::vector<Hole> closedOver(const TriangleMesh& mesh, const ConnectedParts& fou
   return holesOf(points, edges, min_area);
 }
 
-// Removes loops that are no holes: those that edges of loose pieces form by chance, and cracks. At
-// the centre of a hole the winding number is about a half; inside and outside a body it is an
+// Removes loops that are no holes: those that edges of loose pieces form by chance, and cracks. In
+// the middle of a hole the winding number is about a half; inside and outside a body it is an
 // integer.
 void dropLoopsOfChance(const WindingNumber& winding, std::vector<Hole>& holes) {
   constexpr double kHole = 0.35; // largest distance from a half
   std::erase_if(holes, [&](const Hole& hole) {
-    const double around = std::abs(winding.at(hole.centre));
+    const double around = std::abs(winding.at(hole.on));
     return std::abs(around - std::floor(around) - 0.5) > kHole;
   });
 }

@@ -71,6 +71,7 @@ void checkField(const SurfaceField* field, const HapticProperties& haptics, doub
     if (haptics.magnet) with("magnet.range", haptics.magnet->range);
     if (relief > 0) with("relief, highest", relief);
     if (roughness > 0) with("roughness, peak", roughness);
+    if (what.empty()) what = "contact";
     throw Error(what + " does not fit into the band of " + formatNumber(field->band) +
                 " voxels; set band to " + formatNumber(std::ceil(band)) + " or more");
   }

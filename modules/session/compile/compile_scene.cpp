@@ -13,6 +13,8 @@
 #include "core/error.h"
 #include "core/numbers.h"
 #include "field/merge/redistance.h"
+#include "geometry/mesh/mesh_report.h"
+#include "geometry/sides/inner_faces.h"
 #include "haptics/catalog/device_catalog.h"
 
 namespace patina {
@@ -362,7 +364,29 @@ std::shared_ptr<const CompiledScene> withNewParameters(const CompiledScene& old,
 }
 
 UnionSurface hapticTriangles(const CompiledScene& compiled, const Progress& progress) {
-  return unionSurface(compiled.parts, compiled.lattice, *compiled.mesh, progress);
+  UnionSurface surface = unionSurface(compiled.parts, compiled.lattice, *compiled.mesh, progress);
+  if (compiled.built.report.inner_triangles == 0) return surface;
+  std::vector<std::uint8_t> is_inner(compiled.mesh->triangles.size());
+  std::size_t first_face = 0;
+  for (const auto& object : compiled.objects) {
+    TriangleMesh usable = *object->mesh;
+    const std::vector<std::int32_t> faces = usableTriangles(usable);
+    usable.triangles.clear();
+    for (const std::int32_t f : faces)
+      usable.triangles.push_back(object->mesh->triangles[index(f)]);
+    for (const std::int32_t i : innerFaces(usable))
+      is_inner[first_face + index(faces[index(i)])] = 1;
+    first_face += object->mesh->triangles.size();
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < surface.face.size(); ++i) {
+    if (is_inner[index(surface.face[i])]) continue;
+    surface.mesh.triangles[kept] = surface.mesh.triangles[i];
+    surface.face[kept++] = surface.face[i];
+  }
+  surface.mesh.triangles.resize(kept);
+  surface.face.resize(kept);
+  return surface;
 }
 
 std::size_t mergeBytes(const CompiledScene& compiled) {

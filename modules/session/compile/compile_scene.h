@@ -75,8 +75,8 @@ bool canReuseField(const CompiledScene& old, const Scene& scene);
 // Error if the interaction range no longer fits it. Quick: only changed parts are computed.
 std::shared_ptr<const CompiledScene> withNewParameters(const CompiledScene& old, Scene scene);
 
-// Returns the triangles of the union's surface: no unusable ones, and of several objects only those
-// that no other object hides. Faces are numbered as in compiled.mesh.
+// Returns the triangles of the union's surface: no unusable or inner ones, and of several objects
+// only those that no other object hides. Faces are numbered as in compiled.mesh.
 UnionSurface hapticTriangles(const CompiledScene& compiled, const Progress& progress);
 // Memory kept for later edits, without what the field itself shares; 0 for one object.
 std::size_t mergeBytes(const CompiledScene& compiled);
