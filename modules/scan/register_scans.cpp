@@ -22,9 +22,10 @@ namespace {
 // Explains a poor registration of a valid scan and mesh: wrong unit, wrong size or a mirrored mesh.
 
 constexpr double kDeviations = 3.5, kMinScale = 5e-3;
-constexpr double kClearlyBetter = 0.8;             // ratio of the rms
-constexpr double kOutlier = 5;                     // times the rms
-constexpr std::size_t kMaxTried = 400;             // points
+constexpr double kClearlyBetter = 0.8; // ratio of the rms
+constexpr double kOutlier = 5;         // times the rms
+constexpr double kMisfit = 1;          // roughness over noise from which a fit is suspected
+constexpr std::size_t kMaxTried = 400; // points
 constexpr double kMinCover = 0.1, kMaxCover = 1.1; // fractions of the mesh's half diagonal
 constexpr double kOneSize = 0.15;                  // a scale so near to one is no unit
 
@@ -107,10 +108,10 @@ SimilarityFit sizedFit(const SurfaceTarget& target, const std::vector<Vec3>& poi
   return cappedRms(all.residuals, most) < cappedRms(some.residuals, most) ? all : some;
 }
 
-// Returns lines for the user, none if all is well. If the path was registered (`found`), the scale
-// is tested: a line is given if it differs from one by more than 3.5 deviations and half a
-// percent. For a failed registration other units are tried, and for one that failed, is ambiguous or
-// misfits a mirror image, with at most 400 points. `fitting`: the options of `found`.
+// Returns lines for the user, none if all is well. The first of these is given: for a failed
+// registration (`found`) another unit in which the path fits; for one that failed, is ambiguous,
+// misfits or shows another size a mirror image, with at most 400 points; the size, if it differs
+// from one by more than 3.5 deviations and half a percent. `fitting`: the options of `found`.
 std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vector<Vec3>& points,
                                     const RegistrationOptions& fitting, const Registration& found,
                                     Progress& progress) {
@@ -131,7 +132,7 @@ std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vect
                      "may have another size");
   };
   // A mirror image of a nearly symmetric mesh, too, fits but for what looks like roughness.
-  const bool misfits = found.roughness > minNoise(points, fitting.noise);
+  const bool misfits = found.roughness > kMisfit * minNoise(points, fitting.noise);
   if (!isUnreliable(found) && !says && !misfits) return doubts;
 
   // Half the mesh's diagonal, and the largest distance from the path's middle.

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <optional>
+#include <string>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
@@ -208,25 +210,37 @@ TEST_F(Recordings, ReplaceOneThatNeverBegan) {
     Recorder recorder(openFrames("replay:" + scan.string(), 0), nullptr, setup());
     EXPECT_EQ(finished(recorder).error, "");
   };
-  const std::string header = "frame,t [s]\n";
-  const auto leave = [&](bool table) {
+  const auto leave = [&](const std::optional<std::string>& table, const char* other = "") {
     fs::remove_all(made);
     fs::create_directories(made / "frames");
     writeFileAtomically(made / "frames" / "000000.pgm", "P5");
-    if (table) writeFileAtomically(made / "frames.csv", header);
+    if (*other) writeFileAtomically(made / other, "0 0 0 0 0 0 0 1");
+    if (table) writeFileAtomically(made / "frames.csv", *table);
   };
-  leave(true);
-  EXPECT_NO_THROW(record());
-  EXPECT_NE(readFile(made / "frames" / "000000.pgm"), "P5");
-
-  leave(false); // pictures of someone else
+  const auto kept = [&] { return readFile(made / "frames" / "000000.pgm") == "P5"; };
+  for (const std::string& own : {frameListHeader(), std::string()}) {
+    leave(own);
+    EXPECT_NO_THROW(record());
+    EXPECT_FALSE(kept());
+  }
+  // Everything else stays: pictures without a table, a row without a line's end, a foreign file, a
+  // table of others.
+  leave({});
   EXPECT_THROW(record(), FileError);
-  EXPECT_EQ(readFile(made / "frames" / "000000.pgm"), "P5");
-
-  leave(true);
+  EXPECT_TRUE(kept());
+  leave(frameListHeader() + "0,0.5");
+  EXPECT_THROW(record(), FileError);
+  EXPECT_TRUE(kept());
+  for (const char* other : {"frames/notes.txt", "poses.tum"}) {
+    leave(frameListHeader(), other);
+    EXPECT_THROW(record(), FileError);
+    EXPECT_TRUE(kept());
+    EXPECT_TRUE(fs::exists(made / other));
+  }
+  leave(frameListHeader());
   const AppendFile recording(made / "frames.csv");
   EXPECT_THROW(record(), FileError);
-  EXPECT_EQ(readFile(made / "frames" / "000000.pgm"), "P5");
+  EXPECT_TRUE(kept());
 }
 
 TEST_F(Recordings, EndWithFramesOfAnotherSize) {

@@ -236,6 +236,10 @@ TEST_F(Controls, TurnsAMeshWithYUpOnRequestAndRemembersIt) {
   const Vec3 size = bounds(*edits().scene()->mesh).sizes();
   EXPECT_GT(size.z(), 2.9 * size.x()) << "60 of 20 by 40";
   documents().setInteractive(false);
+  window_.reset();
+  window_ = std::make_unique<MainWindow>(); // in the next session, too
+  window_->show();
+  wait(300);
   chooseInMenu(QStringLiteral("&Edit"), QStringLiteral("&Preferences…"));
   ASSERT_TRUE(waitUntil([&] { return find<QCheckBox>("y_up") != nullptr; }, 3000));
   EXPECT_TRUE(find<QCheckBox>("y_up")->isChecked());

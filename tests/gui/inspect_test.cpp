@@ -305,6 +305,7 @@ TEST_F(Inspecting, PinsAPointThatStaysAndIsExported) {
   EXPECT_EQ(pins()[4].name, "E");
   ASSERT_TRUE(waitUntil([&] { return find<QListWidget>("pins")->count() == 5; }, 3000));
   EXPECT_FALSE(find<QPushButton>("pin_remove")->isEnabled()) << "none is selected";
+  wait(200); // the list has grown, and the buttons below it move
   find<QListWidget>("pins")->setCurrentRow(2);
   clickOn("pin_remove");
   ASSERT_TRUE(waitUntil([&] { return pins().size() == 4; }, 3000));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "acquisition/registration/first_guess.h"
 #include "app/gui/aligning/fit_words.h"
@@ -16,6 +17,15 @@ constexpr double kMinColorSpan = 1e-3; // Smallest span of the colour scale [mm]
 constexpr int kMoveEndDelay = 350;     // Time without a change that ends a move [ms].
 constexpr double kMaxLineShare = 0.06; // Length of the longest line, as a fraction of the mesh.
 constexpr double kNoLine = 1e-9;       // Shorter lines are rounding [m].
+
+// A fit is good also where no advice can be given.
+std::optional<ScanAdvice> adviceIfAny(const SurfaceTarget& target, const RegisteredScans& scans) {
+  try {
+    return adviceFor(target, scans);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
 
 } // namespace
 
@@ -200,9 +210,10 @@ void AlignDesk::draw() {
     const auto valueAt = [&](const SurfaceResidual& residual) {
       if (!shows_deviation) return residual.distance;
       const auto face = static_cast<std::size_t>(residual.foot.face);
-      const Triangle& corners = alignment_.target()->mesh().triangles[face];
-      return static_cast<double>(
-          next->known.height_deviation[static_cast<std::size_t>(corners[0])]);
+      float least = std::numeric_limits<float>::infinity();
+      for (const std::int32_t corner : alignment_.target()->mesh().triangles[face])
+        least = std::min(least, next->known.height_deviation[static_cast<std::size_t>(corner)]);
+      return static_cast<double>(least);
     };
     for (std::size_t i = 0; i < found->residuals.size(); ++i)
       if (found->inliers[i])
@@ -269,7 +280,7 @@ void AlignDesk::registerFromHere() {
     };
     try {
       const RegisteredScans scans = registerScans(*target, {path}, options, progress);
-      const ScanAdvice next = adviceFor(*target, scans);
+      const std::optional<ScanAdvice> next = adviceIfAny(*target, scans);
       post(true, [this, rest, scans, next, found = scans.of(0)] {
         rest();
         move(found.mesh_from_path);

@@ -431,8 +431,8 @@ void DocumentController::unitDialog(std::size_t object) {
   const Box3 box = bounds(*shown.mesh);
   const double longest = box.isEmpty() ? 0 : box.sizes().maxCoeff();
   askReread(&at_.window, shownText(shown.name), longest,
-            [this, name = shown.name](MeshUnit was, MeshUnit now, UpAxis up) {
-              at_.edits.rereadObject(name, was, now, up, [this](const EditOutcome& outcome) {
+            [this, name = shown.name, mesh = shown.mesh](MeshUnit was, MeshUnit now, UpAxis up) {
+              at_.edits.rereadObject(name, mesh, was, now, up, [this](const EditOutcome& outcome) {
                 if (outcome.problem.empty()) return;
                 showProblem(&at_.window, tr("The object keeps its size"),
                             QString::fromStdString(outcome.problem),

@@ -264,12 +264,15 @@ void EditController::layPicture(const std::filesystem::path& file, const std::st
       false, std::move(done));
 }
 
-void EditController::rereadObject(const std::string& object, MeshUnit was, MeshUnit now, UpAxis up,
-                                  EditThread::Done done) {
+void EditController::rereadObject(const std::string& object,
+                                  std::shared_ptr<const TriangleMesh> mesh, MeshUnit was,
+                                  MeshUnit now, UpAxis up, EditThread::Done done) {
+  if (was == now && up == UpAxis::z) return;
   thread_.apply(
       "read " + object + " in " + std::string(name(now)) + (up == UpAxis::y ? ", y up" : ""),
       [=](const CompiledScene& present) {
-        return std::make_shared<const Scene>(withReread(present.scene, object, was, now, up));
+        return std::make_shared<const Scene>(
+            withReread(present.scene, object, mesh.get(), was, now, up));
       },
       false, std::move(done));
 }

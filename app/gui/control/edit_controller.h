@@ -53,8 +53,9 @@ class EditController : public QObject {
   void addObjects(const std::vector<SceneObject>& objects, EditThread::Done done);
   void layPicture(const std::filesystem::path& file, const std::string& object, PictureEdit edit,
                   EditThread::Done done);
-  void rereadObject(const std::string& object, MeshUnit was, MeshUnit now, UpAxis up,
-                    EditThread::Done done);
+  // `mesh`: that of the object when this was asked; another one is refused.
+  void rereadObject(const std::string& object, std::shared_ptr<const TriangleMesh> mesh,
+                    MeshUnit was, MeshUnit now, UpAxis up, EditThread::Done done);
   void setTool(const ToolChoice& choice) {
     paints_relief_ = choice == ToolChoice{InteractionMode::paint, Tool::relief};
     showRelief();

@@ -382,7 +382,7 @@ void ViewController::writeVideo(const QString& recording, const QString& path) {
   try {
     Figure figure;
     const int* size = at_.view.renderWindow()->GetSize();
-    figure.width = size[0];
+    figure.width = size[0] * 3 / 2; // The plot stands beside the whole picture.
     figure.height = size[1];
     figure.magnification = std::max(1., at_.view.renderWindow()->GetDPI() / 72.);
     figure.keeps_camera = true;

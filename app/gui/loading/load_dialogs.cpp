@@ -111,7 +111,9 @@ void askReread(QWidget* parent, const QString& name, double longest,
   };
   const auto show = [=] {
     const bool fits = unitOf(now) == MeshUnit::fit;
-    result->setText(inWords(fits ? 0.1 : longest * unitRatio(unitOf(was), unitOf(now))));
+    const double length = fits ? 0.1 : longest * unitRatio(unitOf(was), unitOf(now));
+    result->setText(inWords(length) +
+                    (isUsualLength(length) ? QString() : QDialog::tr(", which is unlikely")));
   };
   for (QComboBox* combo : {was, now})
     QObject::connect(combo, qOverload<int>(&QComboBox::currentIndexChanged), dialog, show);

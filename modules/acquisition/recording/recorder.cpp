@@ -1,7 +1,6 @@
 #include "acquisition/recording/recorder.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -11,6 +10,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "acquisition/files/camera_file.h"
 #include "acquisition/files/frame_files.h"
@@ -88,38 +88,57 @@ std::string greyText(const GreyFrame& image) {
   return text;
 }
 
-constexpr std::array kTables = {"frames.csv", "probe.csv", "poses.tum"};
-
-// Returns true also if another program is writing the table or it cannot be read.
-bool hasRow(const fs::path& table) {
-  if (!pathExists(table)) return false;
+// Returns true if the file is missing, or holds one of these headers or nothing, and nobody is
+// writing it.
+bool hasNoRow(const fs::path& table, const std::vector<std::string>& headers) {
+  if (!pathExists(table)) return true;
   try {
-    if (fs::file_size(table) > kPage) return true;
+    if (fs::file_size(table) > kPage) return false;
     const std::string text = AppendFile(table).content();
-    return std::count(text.begin(), text.end(), '\n') > 1;
+    return text.empty() || std::find(headers.begin(), headers.end(), text) != headers.end();
   } catch (const std::exception&) {
-    return true;
+    return false;
   }
 }
 
-// Removes what a recording leaves that was killed before its first rows were on disk: tables
-// without a row, and pictures whose times are lost.
-void removeUnbegun(const fs::path& folder) {
-  constexpr std::ptrdiff_t kMostPictures = 60; // far above those of a quarter of a second
+// Returns the pictures of a folder that has nothing but a recording's first ones, else none.
+std::vector<fs::path> firstPictures(const fs::path& frames) {
+  constexpr std::size_t kMostPictures = 60; // those of a quarter of a second at 240 Hz
+  std::vector<fs::path> pictures;
+  std::error_code failed;
+  for (fs::directory_iterator entry(frames, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const fs::path name = entry->path().filename();
+    const std::string stem = name.stem().string();
+    const bool own = stem.size() == 6 && name.extension() == ".pgm" &&
+                     stem.find_first_not_of("0123456789") == std::string::npos &&
+                     entry->symlink_status(failed).type() == fs::file_type::regular;
+    if (!own || pictures.size() == kMostPictures) return {};
+    pictures.push_back(entry->path());
+  }
+  return failed ? std::vector<fs::path>() : pictures;
+}
+
+// Removes what a recording leaves that was killed before its first rows were on disk: tables with a
+// header alone, and pictures whose times are lost. Returns the number of these. Keeps everything if
+// there is anything else.
+std::size_t removeUnbegun(const fs::path& folder) {
   const fs::path frames = folder / "frames";
-  if (!pathExists(folder / kTables[0])) return;
-  for (const char* table : kTables)
-    if (hasRow(folder / table)) return;
+  const bool bare = hasNoRow(folder / "frames.csv", {frameListHeader()}) &&
+                    hasNoRow(folder / "probe.csv", {probeHeader(false), probeHeader(true)}) &&
+                    hasNoRow(folder / "poses.tum", {posesHeader()});
+  const std::vector<fs::path> pictures = firstPictures(frames);
   std::error_code ignored; // What cannot be removed is a scan, which requireNoScan() reports.
-  if (std::distance(fs::directory_iterator(frames, ignored), {}) > kMostPictures) return;
-  fs::remove_all(frames, ignored);
-  for (const char* table : kTables) fs::remove(folder / table, ignored);
+  const bool whole = pictures.empty() && !fs::is_empty(frames, ignored) && pathExists(frames);
+  if (!bare || whole || (!pictures.empty() && !pathExists(folder / "frames.csv"))) return 0;
+  for (const fs::path& picture : pictures) fs::remove(picture, ignored);
+  fs::remove(frames, ignored);
+  for (const char* table : {"frames.csv", "probe.csv", "poses.tum"})
+    fs::remove(folder / table, ignored);
+  return pictures.size();
 }
 
 void requireNoScan(const fs::path& folder) {
-  removeUnbegun(folder);
-  std::error_code ignored;
-  if (fs::is_empty(folder / "frames", ignored)) fs::remove(folder / "frames", ignored);
   for (const char* name : {"frames", "frames.csv", "probe.csv", "poses.tum"})
     if (fs::symlink_status(folder / name).type() != fs::file_type::not_found)
       throw FileError(folder.string(), 0, "holds a scan already: name another folder");
@@ -147,6 +166,7 @@ class Recorder::Work {
     if (camera_ && !markers.empty()) tracker_.emplace(*camera_, markers, setup.finder);
     if (probe_ && probe_->isLive() != frames_->isLive())
       throw Error("frames and probe share no clock: both must be live, or both recorded");
+    lost_ = removeUnbegun(folder_);
     requireNoScan(folder_);
     const auto textOf = [](const fs::path& file) { return file.empty() ? "" : readFile(file); };
     const std::string camera_text = textOf(setup.camera), rig_text = textOf(setup.rig);
@@ -269,6 +289,9 @@ class Recorder::Work {
     if (const std::string line = turns_.line(along ? &*camera_ : nullptr, kTurnedUnlike);
         !line.empty())
       notes.push_back(line);
+    if (lost_ > 0)
+      notes.push_back("replaced a recording that was killed before its first row: " +
+                      std::to_string(lost_) + " pictures without a time");
     const std::lock_guard lock(mutex_);
     state_.notes = std::move(notes);
   }
@@ -430,7 +453,8 @@ class Recorder::Work {
   const SteadyClock::time_point begin_;
   MinDelayClock frame_clock_, probe_clock_; // each used by its own thread
 
-  std::mutex mutex_; // guards all members below
+  std::size_t lost_ = 0; // pictures of a recording that never began
+  std::mutex mutex_;     // guards all members below
   std::condition_variable changed_;
   std::optional<NewFolder> fresh_; // deletes the new folder if no data follow
   std::unique_ptr<RowFile> frame_rows_, pose_rows_, probe_rows_;

@@ -51,7 +51,7 @@ SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>
   left.weights.assign(inliers.begin(), inliers.end());
   int selections = 0;
   double variance = 0, radius = 1; // variance over that of a point
-  for (int step = 0; step < kSteps && !fit.converged; ++step) {
+  for (int step = 0; step < kSteps; ++step) {
     for (std::size_t i = 0; i < points.size(); ++i)
       scaled[i] = whole.centre + fit.scale * (points[i] - whole.centre);
     const PoseScaling scale = scaleOf(scaled, fit.mesh_from_path);
@@ -89,11 +89,15 @@ SimilarityFit fitSimilarity(const SurfaceTarget& target, const std::vector<Vec3>
     const double growth = std::clamp(change[6] / scale.radius, -kMaxStep, kMaxStep);
     Vec6 motion = change.head<6>();
     limit(motion, scale, target.extent());
+    // Facets keep the step from vanishing. The last one is left out, so that the residuals are
+    // those of the pose.
+    const double deviation = std::isfinite(variance) ? fit.rms * std::sqrt(variance) : 0;
+    const double moved = std::max(std::abs(growth) * radius, motion.norm());
+    fit.converged = moved < std::max(kSettledScale * radius, kSettledShare * deviation) &&
+                    (++selections == kSelections || !selectAgain(left, noise));
+    if (fit.converged) break;
     fit.mesh_from_path = scale.motion(motion) * fit.mesh_from_path;
     fit.scale *= std::exp(growth);
-    const double deviation = fit.rms * std::sqrt(variance) / radius;
-    fit.converged = std::abs(growth) < std::max(kSettledScale, kSettledShare * deviation) &&
-                    (++selections == kSelections || !selectAgain(left, noise));
   }
   const ResidualNoiseModel law = fitNoiseModel(scaled, left, noise);
   fit.deviation = law.deviation * std::sqrt(law.correlation_length * variance) / radius;

@@ -244,8 +244,11 @@ bool isClosed(const TriangleMesh& mesh, const OpenParts& open) {
     if (part.sides == OpenSides::closed && part.rim_edges > 0) return false;
   const std::vector<Triangle> welded = weldedTriangles(mesh);
   TriangleMesh closed{mesh.positions, {}, {}};
-  for (std::size_t f = 0; f < welded.size(); ++f)
-    if (!open.any() || !open.open[f]) closed.triangles.push_back(welded[f]);
+  for (std::size_t f = 0; f < welded.size(); ++f) {
+    const auto& [a, b, c] = welded[f];
+    const bool counts = a != b && b != c && c != a;
+    if (counts && (!open.any() || !open.open[f])) closed.triangles.push_back(welded[f]);
+  }
   return connectedParts(closed, 0).rims.empty();
 }
 

@@ -64,6 +64,10 @@ TriangleMesh zUp(TriangleMesh mesh, UpAxis up) {
   return mesh;
 }
 
+bool isUsualLength(double metres) {
+  return metres >= kSmall && metres <= kLarge;
+}
+
 ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit) {
   ScaledMesh result;
   const Box3 box = finiteBox(mesh);
@@ -81,7 +85,7 @@ ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit) {
   if (result.scale != 1.0)
     for (Vec3& p : mesh.positions) p *= result.scale;
   const double metres = side * result.scale;
-  if (side > 0 && !(metres >= kSmall && metres <= kLarge))
+  if (side > 0 && !isUsualLength(metres))
     result.warning = "the mesh is " + formatLength(metres) + " long when its unit is " +
                      std::string(name(unit)) + "; choose another with --unit (mm, cm, m, in, fit)";
   result.mesh = std::move(mesh);

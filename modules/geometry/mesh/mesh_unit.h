@@ -32,6 +32,8 @@ struct ScaledMesh {
   double scale = 1;    // metres per file unit
   std::string warning; // empty, or one line if the result is < 1 mm or > 2 m; names --unit
 };
+// Returns true from 1 mm to 2 m: others are probably read in a wrong unit.
+bool isUsualLength(double metres);
 // Throws Error if a finite corner would lie beyond kMaxCoordinate.
 ScaledMesh inMetres(TriangleMesh mesh, MeshUnit unit);
 
