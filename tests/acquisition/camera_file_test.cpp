@@ -174,7 +174,8 @@ TEST(CameraFile, RejectsInvalidFilesInOneLine) {
             "cam:9: '.nan' is not a finite number");
   EXPECT_EQ(cameraRefusal(with("600, 0, 320", "-600, 0, 320")),
             "cam:9: 'camera_matrix' must be fx 0 cx 0 fy cy 0 0 1");
-  EXPECT_EQ(cameraRefusal(with("600, 0, 320, ", "600, ")), "cam:9: 'camera_matrix' has 7 numbers");
+  EXPECT_EQ(cameraRefusal(with("600, 0, 320, ", "600, ")),
+            "cam:9: 'camera_matrix' has 7 numbers for 3 x 3");
   EXPECT_EQ(cameraRefusal(good + "image_width: 640\n"),
             "cam:15: 'image_width' stands in line 3 already");
   EXPECT_EQ(cameraRefusal(with("320, 0, 600", "320, 0, [600")),
@@ -187,6 +188,9 @@ TEST(CameraFile, RejectionNamesTheModelAndTheKnownModels) {
   EXPECT_EQ(cameraRefusal(rosCamera("fov", "0.9")), "cam:8: 'distortion_model' is 'fov'" + known);
   EXPECT_EQ(cameraRefusal(rosCamera("inverse_brown_conrady", "0, 0, 0, 0, 0")),
             "cam:8: 'distortion_model' is 'inverse_brown_conrady'" + known);
+  std::string five = rosCamera("plumb_bob", "0.1, 0.2, 0.3, 0.4, 0.5");
+  five.replace(five.find("cols: 0"), 7, "cols: 4");
+  EXPECT_EQ(cameraRefusal(five), "cam:12: 'distortion_coefficients' has 5 numbers for 1 x 4");
   EXPECT_EQ(cameraRefusal(rosCamera("equidistant", "0.1, 0.2, 0.3, 0.4, 0.5")),
             "cam:12: 'distortion_coefficients' of 'equidistant' has 5 numbers; known are 4");
   EXPECT_EQ(cameraRefusal(rosCamera("equidistant", "0.1, 0.2")),

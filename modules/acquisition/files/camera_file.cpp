@@ -312,6 +312,7 @@ class CameraSettings {
           throw FileError(name_, found->second.repeats,
                           "'" + key + "' stands in line " + std::to_string(found->second.line) +
                               " already");
+        requireSize(path.substr(0, path.find("/data")), key, found->second);
         return &found->second;
       }
     return nullptr;
@@ -336,6 +337,16 @@ class CameraSettings {
   bool isKalibr() const { return find({"intrinsics"}) != nullptr; }
 
  private:
+  // Throws FileError if a matrix states another size than it has numbers.
+  void requireSize(const std::string& path, const std::string& key, const Setting& matrix) const {
+    const auto rows = settings_.find(path + "/rows"), cols = settings_.find(path + "/cols");
+    if (rows == settings_.end() || cols == settings_.end()) return;
+    const auto r = parseNumber(word(&rows->second)), c = parseNumber(word(&cols->second));
+    const double size = r && c ? *r * *c : 0;
+    if (size == 0 || size == static_cast<double>(matrix.words.size())) return;
+    refuse(matrix, "'" + key + "' has " + std::to_string(matrix.words.size()) + " numbers for " +
+                       word(&rows->second) + " x " + word(&cols->second));
+  }
   // Returns the path's prefix of kalibr's camera (cam0, cam1, ...); throws if there are several.
   std::string camPrefix() const {
     std::string prefix;
