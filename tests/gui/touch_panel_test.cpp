@@ -118,12 +118,14 @@ TEST_F(TouchPanels, EditBeyondTheFieldIsReportedAndNotRendered) {
   haptics.offset = 0.2;
   find<HapticsPanel>()->setValues(haptics);
   emit find<HapticsPanel>()->edited(haptics);
-  wait(150);
+  const auto notified = [&] {
+    const auto labels = find<HapticsPanel>()->findChildren<QLabel*>();
+    return std::any_of(labels.begin(), labels.end(), [](const QLabel* label) {
+      return label->isVisible() && label->text().contains(QStringLiteral("band"));
+    });
+  };
+  EXPECT_TRUE(waitUntil(notified, 3000));
   EXPECT_EQ(edits().scene(), felt);
-  bool notified = false;
-  for (const QLabel* label : find<HapticsPanel>()->findChildren<QLabel*>())
-    notified = notified || (label->isVisible() && label->text().contains(QStringLiteral("band")));
-  EXPECT_TRUE(notified);
 }
 
 TEST_F(TouchPanels, DeviceNumbersAppearForASimulatedDeviceAndStabiliseTheLoop) {
