@@ -1,4 +1,6 @@
 // Modes, device and stabilisers: the servo gets the panels' values.
+#include <algorithm>
+
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
