@@ -109,8 +109,8 @@ SimilarityFit sizedFit(const SurfaceTarget& target, const std::vector<Vec3>& poi
 
 // Returns lines for the user, none if all is well. If the path was registered (`found`), the scale
 // is tested: a line is given if it differs from one by more than 3.5 deviations and half a
-// percent. For a failed registration other units are tried, and for one that failed, is ambiguous or
-// misfits a mirror image, with at most 400 points. `fitting`: the options of `found`.
+// percent. For a failed registration other units are tried, and for one that failed, is ambiguous
+// or misfits a mirror image, with at most 400 points. `fitting`: the options of `found`.
 std::vector<std::string> scanDoubts(const SurfaceTarget& target, const std::vector<Vec3>& points,
                                     const RegistrationOptions& fitting, const Registration& found,
                                     Progress& progress) {
@@ -233,7 +233,7 @@ void pressAgain(const SurfaceTarget& target, const std::vector<Vec3>& points, co
     const auto& press = all.presses[s] =
         complianceOverMesh(target, all.registration.mesh_from_path, paths[s]);
     if (!press || !press->isSignificant()) continue;
-    fitting.expected[s] = {press->compliance, press->compliance_deviation};
+    fitting.expected[s] = {press->compliance, press->standard_deviation};
     found_presses = true;
   }
   if (!found_presses) return;
