@@ -234,7 +234,7 @@ void pressAgain(const SurfaceTarget& target, const std::vector<Vec3>& points, co
     const auto& press = all.presses[s] =
         complianceOverMesh(target, all.registration.mesh_from_path, paths[s]);
     if (!press || !press->isSignificant()) continue;
-    fitting.expected[s] = {press->compliance, press->compliance_deviation};
+    fitting.expected[s] = {press->compliance, press->standard_deviation};
     found_presses = true;
   }
   if (!found_presses) return;

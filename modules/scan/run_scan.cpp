@@ -67,9 +67,7 @@ class Runner {
     target_.emplace(cleaned(mesh_).mesh, tip_radius_, true);
     for (Run& one : runs_)
       if (one.from <= ScanStep::track) track(one);
-    if (options_.to >= ScanStep::filter)
-      for (Run& one : runs_)
-        if (one.from <= ScanStep::filter && !filter(one, true)) return std::move(report_);
+    if (options_.to >= ScanStep::filter && !filterAll()) return std::move(report_);
     if (options_.to >= ScanStep::register_paths && registers() && !registerAll())
       return std::move(report_);
     if (options_.to >= ScanStep::texture) fitAndLay();
@@ -107,8 +105,19 @@ class Runner {
   }
 
   static ScanStep firstToRun(const Run& one) {
-    if (std::filesystem::exists(one.folder / "path.csv")) return ScanStep::register_paths;
+    if (std::filesystem::exists(one.folder / "path.csv") && !hasWrongPath(one))
+      return ScanStep::register_paths;
     return one.files.poses.empty() ? ScanStep::track : ScanStep::filter;
+  }
+
+  // Returns true if path.csv is what an earlier run filtered and found wrong.
+  static bool hasWrongPath(const Run& one) {
+    const std::filesystem::path file = one.folder / "scan.json";
+    if (!std::filesystem::exists(file)) return false;
+    const Json json = parseJson(readFile(file), file.string());
+    const Json* filtered = json.find(scanStepNames()[static_cast<std::size_t>(ScanStep::filter)]);
+    const Json* wrong = filtered ? filtered->find("wrong_path") : nullptr;
+    return wrong && wrong->asString() == sha256OfFile(one.folder / "path.csv");
   }
 
   // Returns true if an earlier run has registered the scan and was certain of its pose.
@@ -167,6 +176,14 @@ class Runner {
              .set("reprojection_rms_px", found.rms));
   }
 
+  // Filters all scans before it returns false if a path is wrong.
+  bool filterAll() {
+    bool right = true;
+    for (Run& one : runs_)
+      if (one.from <= ScanStep::filter) right = filter(one, true) && right;
+    return right;
+  }
+
   // Returns false if the path is wrong.
   bool filter(Run& one, bool writes) {
     const auto begin = Clock::now();
@@ -180,10 +197,11 @@ class Runner {
     if (!writes) return true;
     warn(one.filtered->warnings, one.folder.string() + ": ");
     writePath(one.folder / "path.csv", one.filtered->path);
+    Json json = Json::object();
+    json.set("samples", one.filtered->path.size()).set("nis_mean", one.filtered->track.nis_mean);
+    if (one.filtered->is_wrong) json.set("wrong_path", sha256OfFile(one.folder / "path.csv"));
     note(ScanStep::filter, one.folder, begin, formatCount(one.filtered->path.size()) + " samples",
-         Json::object()
-             .set("samples", one.filtered->path.size())
-             .set("nis_mean", one.filtered->track.nis_mean));
+         json);
     return !one.filtered->is_wrong;
   }
 

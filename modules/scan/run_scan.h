@@ -26,8 +26,9 @@ struct RunScanOptions {
   std::filesystem::path mesh;
   MeshUnit unit = MeshUnit::mm;
   std::filesystem::path workspace; // new workspace; empty if `to` is before the last step
-  // First step to run. Absent: the first whose files are missing in a folder. Paths are registered
-  // again if mesh, unit or paths have changed or the pose was uncertain.
+  // First step to run. Absent: the first whose files are missing in a folder; a path that was found
+  // wrong counts as missing. Paths are registered again if mesh, unit or paths have changed or the
+  // pose was uncertain.
   std::optional<ScanStep> from;
   ScanStep to = ScanStep::texture;
   std::optional<double> tip_radius;     // radius of the probe's tip [m]; absent: that of the rigs
@@ -44,7 +45,7 @@ struct RunScanReport {
   std::vector<Step> steps; // steps that ran
   std::vector<std::string> warnings;
   std::optional<RegisteredScans> registered; // if that step ran
-  // All steps ran. A wrong path stops before it is registered, and an uncertain pose before the
+  // All steps ran. Wrong paths stop before any is registered, and an uncertain pose before the
   // texture is mapped.
   bool done = false;
 };

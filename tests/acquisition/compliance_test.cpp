@@ -92,34 +92,116 @@ TEST(Compliance, DeviationHoldsUnderCorrelatedErrors) {
   EXPECT_NEAR(found.stated / found.deviation, 1, 0.1);
 }
 
-// Each press has an error of its own that grows with the force, like that of a tilted path. Two
-// deviations hold the truth in 95 % even for few presses.
+constexpr double kScatteredStiffness = 800, kScatter = 0.08; // the slopes' deviation is relative
+
+// Each press has an error of its own that grows with the force, like that of a tilted path.
+std::vector<PressSample> scatteredPresses(int count, std::uint32_t seed, double sigma = 0) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<PressSample> samples;
+  for (int press = 0; press < count; ++press) {
+    const double slope = (1 + kScatter * normal(random)) / kScatteredStiffness;
+    for (int i = 0; i < 60; ++i) {
+      const double force = 3.0 * i / 59;
+      samples.push_back({press + i / 500., slope * force + 2e-5 * normal(random),
+                         force + kForceSigma * normal(random), sigma});
+    }
+  }
+  return samples;
+}
+
+// Two deviations hold the truth in 95 % even for few presses.
 TEST(Compliance, DeviationIsWiderForFewPresses) {
-  constexpr double kStiffness = 800, kOwn = 0.08; // deviation of a press's slope, relative
   for (const int count : {2, 3, 5, 12}) {
     int held = 0, all = 0;
     for (std::uint32_t seed = 0; seed < 1500; ++seed) {
-      std::mt19937 random(seed);
-      std::normal_distribution<double> normal;
-      std::vector<PressSample> samples;
-      for (int press = 0; press < count; ++press) {
-        const double slope = (1 + kOwn * normal(random)) / kStiffness;
-        for (int i = 0; i < 60; ++i) {
-          const double force = 3.0 * i / 59;
-          samples.push_back({press + i / 500., slope * force + 2e-5 * normal(random),
-                             force + kForceSigma * normal(random)});
-        }
-      }
-      const auto estimate = estimateCompliance(samples, kForceSigma, true);
+      const auto estimate = estimateCompliance(scatteredPresses(count, seed), kForceSigma, true);
       ASSERT_TRUE(estimate);
       ASSERT_EQ(estimate->loadings, static_cast<std::size_t>(count));
-      held += std::abs(estimate->compliance - 1 / kStiffness) < 2 * estimate->compliance_deviation;
+      held += std::abs(estimate->compliance - 1 / kScatteredStiffness) <
+              2 * estimate->compliance_deviation;
       ++all;
     }
     const double share = static_cast<double>(held) / all; // its own deviation is .005
     std::printf("%d presses: two deviations hold the truth in %.3f\n", count, share);
     EXPECT_NEAR(share, 0.9545, 0.02) << count;
   }
+}
+
+// The interval's width is no standard deviation: squared, it would make the stiffness too low.
+TEST(Compliance, StiffnessOfFewPressesIsUnbiased) {
+  for (const int count : {2, 3, 5}) {
+    constexpr int kSeeds = 3000;
+    double mean = 0, variance = 0, stated = 0;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+      const auto estimate = estimateCompliance(scatteredPresses(count, seed), kForceSigma, true);
+      ASSERT_TRUE(estimate);
+      mean += estimate->stiffness / kSeeds;
+      variance += std::pow(estimate->compliance - 1 / kScatteredStiffness, 2) / kSeeds;
+      stated += std::pow(estimate->standard_deviation, 2) / kSeeds;
+    }
+    std::printf("%d presses: stiffness %+.2f %%, stated / true variance %.2f\n", count,
+                100 * (mean / kScatteredStiffness - 1), stated / variance);
+    EXPECT_NEAR(mean / kScatteredStiffness, 1, 0.005); // its own deviation is .001
+    EXPECT_NEAR(stated / variance, 1, 0.1);
+  }
+}
+
+// Tables of Student's t: 13.968, 4.5266 and 3.3068 hold 95.45 % for 1, 2 and 3 degrees of freedom.
+TEST(Compliance, FewPressesAreWidenedByStudentsT) {
+  for (const auto& [count, quantile] : {std::pair(2, 13.968), {3, 4.5266}, {4, 3.3068}}) {
+    const auto estimate = estimateCompliance(scatteredPresses(count, 1), kForceSigma, true);
+    ASSERT_TRUE(estimate);
+    EXPECT_NEAR(2 * estimate->compliance_deviation / estimate->standard_deviation, quantile,
+                0.003 * quantile);
+    EXPECT_NEAR(estimate->stiffness_deviation / estimate->stiffness,
+                estimate->compliance_deviation / estimate->compliance, 1e-12);
+  }
+}
+
+// The path states what the presses scatter by, so that their variances are averaged: here the
+// error of a slope that lets two ends differ by sigma each, over 3 N. The ends of a loading are
+// left out, up to a quarter of the range.
+TEST(Compliance, ScatterOfPressesIsAveragedWithWhatThePathStates) {
+  constexpr double kStated = 4; // the path is worth four presses
+  const double slope_deviation = kScatter / kScatteredStiffness;
+  const double sigma = slope_deviation * 3 / std::sqrt(2);
+  for (const int count : {2, 3, 8}) {
+    int held = 0;
+    constexpr int kSeeds = 1500;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+      const auto scattered = estimateCompliance(scatteredPresses(count, seed), kForceSigma, true);
+      const auto pooled =
+          estimateCompliance(scatteredPresses(count, seed, sigma), kForceSigma, true);
+      ASSERT_TRUE(scattered && pooled);
+      const double own = count - 1, stated = slope_deviation * slope_deviation / count;
+      const double expected = std::sqrt(
+          (own * std::pow(scattered->standard_deviation, 2) + kStated * stated) / (own + kStated));
+      EXPECT_GT(pooled->standard_deviation, 0.95 * expected) << count << " " << seed;
+      EXPECT_LT(pooled->standard_deviation, 1.35 * expected) << count << " " << seed;
+      held +=
+          std::abs(pooled->compliance - 1 / kScatteredStiffness) < 2 * pooled->compliance_deviation;
+    }
+    std::printf("%d presses and the path: held in %.3f\n", count, held / double(kSeeds));
+    EXPECT_GT(held / double(kSeeds), 0.9545 - 0.02) << count;
+  }
+}
+
+// The contact begins with a rise of two samples, of which one is left, before a pause.
+TEST(Compliance, ARiseWithoutASlopeIsNoPress) {
+  constexpr double kSigma = 0.2e-3;
+  std::vector<PressSample> press;
+  for (int i = 0; i < 250; ++i)
+    press.push_back({1 + i / 500., 3.0 * std::max(i - 20, 0) / 229 / 800,
+                     3.0 * std::max(i - 20, 0) / 229, kSigma});
+  std::vector<PressSample> all = {{0, 0, 0, kSigma}, {0.002, 0, 3, kSigma}};
+  all.insert(all.end(), press.begin(), press.end());
+  const auto alone = estimateCompliance(press, 0, true), found = estimateCompliance(all, 0, true);
+  ASSERT_TRUE(alone && found);
+  EXPECT_EQ(found->loadings, 1u);
+  EXPECT_NEAR(found->stiffness / alone->stiffness, 1, 0.01);
+  EXPECT_NEAR(found->compliance_deviation / alone->compliance_deviation, 1, 0.05);
+  EXPECT_GT(found->compliance_deviation, kSigma / 3);
 }
 
 // Errors of the path last as long as a press and are stated.

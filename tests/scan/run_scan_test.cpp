@@ -71,6 +71,22 @@ TEST_F(RunScan, KeepsACertainPoseFromAnUncertainOne) {
   EXPECT_EQ(readFile(folder_ / "scan" / "registered.csv"), before);
 }
 
+// Gravity that points sideways contradicts the accelerometers.
+TEST_F(RunScan, StopsAtWrongPathsInEachRun) {
+  const std::filesystem::path other = folder_ / "other";
+  setInJson("rig.json", "gravity", Json(Json::Array{9.80665, 0., 0.}));
+  std::filesystem::copy(folder_ / "scan", other);
+  options_.also = {other};
+  options_.to = ScanStep::register_paths;
+  for (int run = 0; run < 2; ++run) {
+    const RunScanReport report = runScan(options_, progress_);
+    EXPECT_FALSE(report.done);
+    EXPECT_FALSE(report.registered) << "run " << run;
+    EXPECT_EQ(linesWith(report, "contradict one another"), 2U) << "run " << run;
+    EXPECT_EQ(linesWith(report, other.string() + ": accelerometers"), 1U) << "run " << run;
+  }
+}
+
 TEST_F(RunScan, TakesTheTipRadiusFromTheRigUnlessGiven) {
   constexpr double kRadius = 0.4e-3; // [m]
   options_.to = ScanStep::register_paths;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace patina {
 namespace {
@@ -24,8 +25,17 @@ std::vector<double> smoothedForces(const std::vector<PressSample>& samples) {
   return smooth;
 }
 
+double forceRange(const std::vector<PressSample>& samples, const Loading& loading) {
+  const auto [lowest, highest] =
+      std::minmax_element(samples.begin() + static_cast<std::ptrdiff_t>(loading.begin),
+                          samples.begin() + static_cast<std::ptrdiff_t>(loading.end),
+                          [](const auto& a, const auto& b) { return a.force < b.force; });
+  return highest->force - lowest->force;
+}
+
 // Returns rises of the force from a minimum to the next maximum. They are chosen by the force
-// alone, because a choice by displacement would favour its noise.
+// alone, because a choice by displacement would favour its noise. A rise that only the smoothing
+// shows, such as that of a single sample, has no slope and is left out.
 std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double min_force_rise) {
   std::vector<Loading> loadings;
   if (samples.empty()) return loadings;
@@ -39,7 +49,8 @@ std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double 
     std::size_t begin = low, end = high;
     while (begin < end && force[begin] < force[low] + 0.02 * rise) ++begin;
     while (end > begin && force[end] > force[high] - 0.02 * rise) --end;
-    loadings.push_back({begin, end + 1});
+    const Loading loading{begin, end + 1};
+    if (forceRange(samples, loading) > 0) loadings.push_back(loading);
   };
   for (std::size_t i = 1; i < samples.size(); ++i) {
     if (samples[i].t - samples[i - 1].t > kPause) {
@@ -61,9 +72,12 @@ std::vector<Loading> loadingsOf(const std::vector<PressSample>& samples, double 
 }
 
 // Returns half the quantile of Student's t within +- which lies the probability of two normal
-// deviations, expanded about infinitely many degrees of freedom (Cornish & Fisher 1938); few
-// values need a wider interval.
+// deviations; few values need a wider interval. One and two degrees of freedom have a closed form.
+// More are expanded about infinitely many (Cornish & Fisher 1938), to 0.2 %.
 double studentQuantile(double freedom) {
+  const double share = std::erf(std::numbers::sqrt2);
+  if (freedom == 1) return std::tan(std::numbers::pi / 2 * share) / 2;
+  if (freedom == 2) return share * std::sqrt(2 / (1 - share * share)) / 2;
   const double v = 1 / freedom;
   return 1 + v * (1.25 + v * (1.53125 + v * (1.4297 + v * 0.922)));
 }
@@ -104,15 +118,13 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
       m.displacements += x.back() * x.back();
     }
     m.freedom += n - 1;
-    double squares_of_sigma = 0, forces = 0, lowest = 0, highest = 0;
+    double squares_of_sigma = 0, forces = 0;
     for (std::size_t i = loading.begin; i < loading.end; ++i) {
       const double force = samples[i].force - mean_f;
       squares_of_sigma += samples[i].sigma * samples[i].sigma / n;
       forces += force * force;
-      lowest = std::min(lowest, force);
-      highest = std::max(highest, force);
     }
-    stated += 2 * squares_of_sigma * std::pow(forces / (highest - lowest), 2);
+    stated += 2 * squares_of_sigma * std::pow(forces / forceRange(samples, loading), 2);
   }
   const double force_variance = force_sigma * force_sigma;
   const double true_forces = m.forces - m.freedom * force_variance;
@@ -137,7 +149,7 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
       std::max((1 + autocorrelation) / (1 - autocorrelation), 1e-3);
   estimate.compliance = C;
   // The second term is the noise of the forces, also in the sum that was corrected for it.
-  estimate.compliance_deviation =
+  estimate.standard_deviation =
       std::sqrt(samples_per_independent * residual_variance / true_forces +
                 m.freedom * force_variance * (residual_variance + C * C * force_variance) /
                     (true_forces * true_forces));
@@ -152,14 +164,17 @@ std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSamp
     variance += kStatedFreedom * stated;
     freedom += kStatedFreedom;
   }
-  if (freedom > 0)
+  estimate.compliance_deviation = estimate.standard_deviation;
+  if (freedom > 0) {
+    const double scatter = std::sqrt(variance / freedom) / true_forces;
     estimate.compliance_deviation =
-        std::max(estimate.compliance_deviation,
-                 studentQuantile(freedom) * std::sqrt(variance / freedom) / true_forces);
-  // The mean of 1 / C is too large by the square of C's relative deviation.
-  const double relative = estimate.compliance_deviation / C;
+        std::max(estimate.standard_deviation, studentQuantile(freedom) * scatter);
+    estimate.standard_deviation = std::max(estimate.standard_deviation, scatter);
+  }
+  // The mean of 1 / C is too large by the square of C's relative standard deviation.
+  const double relative = estimate.standard_deviation / C;
   estimate.stiffness = 1 / (C * (1 + relative * relative));
-  estimate.stiffness_deviation = estimate.stiffness * relative;
+  estimate.stiffness_deviation = estimate.stiffness * estimate.compliance_deviation / C;
   estimate.displacement_noise = std::sqrt(std::max(residual_variance - C * C * force_variance, 0.));
   estimate.samples = f.size();
   estimate.loadings = loadings.size();

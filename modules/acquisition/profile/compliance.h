@@ -14,9 +14,12 @@ struct PressSample {
 };
 
 struct ComplianceEstimate {
-  double compliance = 0, compliance_deviation = 0; // value and standard deviation [m/N]
-  double stiffness = 0, stiffness_deviation = 0;   // [N/m]
-  double displacement_noise = 0;                   // standard deviation of the residuals [m]
+  double compliance = 0, standard_deviation = 0; // value and its standard deviation [m/N]
+  // The deviations to report are as wide as the standard deviation of many presses and wider for
+  // few: the value +- two of them holds the truth in 95 %.
+  double compliance_deviation = 0;               // [m/N]
+  double stiffness = 0, stiffness_deviation = 0; // [N/m]
+  double displacement_noise = 0;                 // standard deviation of the residuals [m]
   std::size_t samples = 0, loadings = 0;
 
   bool isSignificant() const { return compliance > 2 * compliance_deviation; }
@@ -26,11 +29,10 @@ struct ComplianceEstimate {
 // its own zero; unloading would include hysteresis. Both variables have errors: `force_sigma` [N],
 // and the scatter of the displacement. Regression of force on displacement would be biased by the
 // displacement's noise, by 42 % at 3000 N/m with 0.3 mm.
-// The deviation accounts for the autocorrelation of the residuals. With `correlated_within_press`
-// it is at least the scatter between presses, averaged with what the samples' own `sigma` lets
-// expect, and so wide that two deviations hold the truth in 95 % also of few presses. Pauses of
-// more than 0.05 s separate presses. Returns nullopt without a loading of at least `min_force_rise`
-// [N].
+// The standard deviation accounts for the autocorrelation of the residuals. With
+// `correlated_within_press` it is at least the scatter between presses, averaged with what the
+// samples' own `sigma` lets expect. Pauses of more than 0.05 s separate presses. Returns nullopt
+// without a loading of at least `min_force_rise` [N].
 std::optional<ComplianceEstimate> estimateCompliance(const std::vector<PressSample>& samples,
                                                      double force_sigma,
                                                      bool correlated_within_press = false,
