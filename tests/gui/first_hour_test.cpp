@@ -52,7 +52,7 @@ TEST_F(FirstHourTest, LeadsFromNothingToACalibratedRigInAtMostTwelveClicks) {
   fill("hour_folder", rig.string());
   clickHere("hour_print");
   ASSERT_TRUE(waitUntil([&] { return isMarked("hour_print"); })) << words("hour_note");
-  EXPECT_EQ(words("hour_print_words").find("5 markers of 27 mm"), 0u) << words("hour_print_words");
+  EXPECT_EQ(words("hour_print_words").find("5 markers of 27"), 0u) << words("hour_print_words");
   EXPECT_TRUE(fs::exists(rig / "board.pdf"));
 
   test::writeBoardFrames(board, camera, parseBoard(page().hour().board));

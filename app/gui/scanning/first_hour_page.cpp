@@ -125,7 +125,7 @@ FirstHourPage::FirstHourPage(QWidget* parent)
   measured_ = addLine("hour_measured", tr("Marker"),
                       tr("Side of the black square of the first marker as a calliper measures it, "
                          "27.05mm; without it the scale stays as uncertain as the print"));
-  measured_->setPlaceholderText(tr("side of its black square, if measured: 22.5mm"));
+  measured_->setPlaceholderText(tr("side of its black square, if measured: 27mm"));
   shape_ = named(new QComboBox(this), "hour_shape", tr("Body of the rig that is printed"));
   for (const QString& words :
        {tr("Cube, 5 markers"), tr("Pen, 13 markers"), tr("Dodecahedron, 11 markers")})
