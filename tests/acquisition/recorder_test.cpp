@@ -238,6 +238,10 @@ TEST_F(Recordings, ReplaceOneThatNeverBegan) {
     EXPECT_TRUE(fs::exists(made / other));
   }
   leave(frameListHeader());
+  fs::create_symlink(folder / "nowhere", made / "poses.tum"); // a link to nothing
+  EXPECT_THROW(record(), FileError);
+  EXPECT_TRUE(kept());
+  leave(frameListHeader());
   const AppendFile recording(made / "frames.csv");
   EXPECT_THROW(record(), FileError);
   EXPECT_TRUE(kept());

@@ -123,6 +123,8 @@ std::vector<fs::path> firstPictures(const fs::path& frames) {
 // header alone, and pictures whose times are lost. Returns the number of these. Keeps everything if
 // there is anything else.
 std::size_t removeUnbegun(const fs::path& folder) {
+  for (const char* name : {"frames", "frames.csv", "probe.csv", "poses.tum"})
+    if (fs::is_symlink(fs::symlink_status(folder / name))) return 0;
   const fs::path frames = folder / "frames";
   const bool bare = hasNoRow(folder / "frames.csv", {frameListHeader()}) &&
                     hasNoRow(folder / "probe.csv", {probeHeader(false), probeHeader(true)}) &&
