@@ -241,6 +241,11 @@ TEST_F(Recordings, ReplaceOneThatNeverBegan) {
   fs::create_symlink(folder / "nowhere", made / "poses.tum"); // a link to nothing
   EXPECT_THROW(record(), FileError);
   EXPECT_TRUE(kept());
+  // A refusal for another cause leaves even a recorder's own.
+  leave(frameListHeader());
+  writeFileAtomically(made / "camera.yml", "another");
+  EXPECT_THROW(record(), FileError);
+  EXPECT_TRUE(kept());
   leave(frameListHeader());
   const AppendFile recording(made / "frames.csv");
   EXPECT_THROW(record(), FileError);

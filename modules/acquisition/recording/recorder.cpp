@@ -1,6 +1,7 @@
 #include "acquisition/recording/recorder.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -101,10 +102,13 @@ bool hasNoRow(const fs::path& table, const std::vector<std::string>& headers) {
   }
 }
 
-// Returns the pictures of a folder that has nothing but a recording's first ones, else none.
-std::vector<fs::path> firstPictures(const fs::path& frames) {
+constexpr std::array kScanFiles = {"frames", "frames.csv", "probe.csv", "poses.tum"};
+
+// Returns the pictures of a folder that has nothing but a recording's first ones.
+std::optional<std::vector<fs::path>> firstPictures(const fs::path& frames) {
   constexpr std::size_t kMostPictures = 60; // those of a quarter of a second at 240 Hz
   std::vector<fs::path> pictures;
+  if (!pathExists(frames)) return pictures;
   std::error_code failed;
   for (fs::directory_iterator entry(frames, failed), end; !failed && entry != end;
        entry.increment(failed)) {
@@ -113,37 +117,32 @@ std::vector<fs::path> firstPictures(const fs::path& frames) {
     const bool own = stem.size() == 6 && name.extension() == ".pgm" &&
                      stem.find_first_not_of("0123456789") == std::string::npos &&
                      entry->symlink_status(failed).type() == fs::file_type::regular;
-    if (!own || pictures.size() == kMostPictures) return {};
+    if (!own || pictures.size() == kMostPictures) return std::nullopt;
     pictures.push_back(entry->path());
   }
-  return failed ? std::vector<fs::path>() : pictures;
+  return failed ? std::nullopt : std::optional(pictures);
 }
 
-// Removes what a recording leaves that was killed before its first rows were on disk: tables with a
-// header alone, and pictures whose times are lost. Returns the number of these. Keeps everything if
-// there is anything else.
-std::size_t removeUnbegun(const fs::path& folder) {
-  for (const char* name : {"frames", "frames.csv", "probe.csv", "poses.tum"})
-    if (fs::is_symlink(fs::symlink_status(folder / name))) return 0;
-  const fs::path frames = folder / "frames";
-  const bool bare = hasNoRow(folder / "frames.csv", {frameListHeader()}) &&
+// Returns what a recording leaves that was killed before its first rows were on disk, none in a
+// folder without any: tables with a header alone, and pictures whose times are lost. Throws
+// FileError if the folder holds anything else of a scan.
+std::vector<fs::path> leftoversIn(const fs::path& folder) {
+  std::vector<fs::path> found;
+  bool linked = false;
+  for (const char* name : kScanFiles) {
+    const fs::file_type type = fs::symlink_status(folder / name).type();
+    linked = linked || type == fs::file_type::symlink;
+    if (type != fs::file_type::not_found) found.push_back(folder / name);
+  }
+  if (found.empty()) return found;
+  const bool bare = !linked && hasNoRow(folder / "frames.csv", {frameListHeader()}) &&
                     hasNoRow(folder / "probe.csv", {probeHeader(false), probeHeader(true)}) &&
                     hasNoRow(folder / "poses.tum", {posesHeader()});
-  const std::vector<fs::path> pictures = firstPictures(frames);
-  std::error_code ignored; // What cannot be removed is a scan, which requireNoScan() reports.
-  const bool whole = pictures.empty() && !fs::is_empty(frames, ignored) && pathExists(frames);
-  if (!bare || whole || (!pictures.empty() && !pathExists(folder / "frames.csv"))) return 0;
-  for (const fs::path& picture : pictures) fs::remove(picture, ignored);
-  fs::remove(frames, ignored);
-  for (const char* table : {"frames.csv", "probe.csv", "poses.tum"})
-    fs::remove(folder / table, ignored);
-  return pictures.size();
-}
-
-void requireNoScan(const fs::path& folder) {
-  for (const char* name : {"frames", "frames.csv", "probe.csv", "poses.tum"})
-    if (fs::symlink_status(folder / name).type() != fs::file_type::not_found)
-      throw FileError(folder.string(), 0, "holds a scan already: name another folder");
+  const auto pictures = bare ? firstPictures(folder / "frames") : std::nullopt;
+  if (!pictures || (!pictures->empty() && !pathExists(folder / "frames.csv")))
+    throw FileError(folder.string(), 0, "holds a scan already: name another folder");
+  found.insert(found.begin(), pictures->begin(), pictures->end());
+  return found;
 }
 
 // Writes a file next to the frames. An equal file may exist, as in a prepared folder.
@@ -168,14 +167,17 @@ class Recorder::Work {
     if (camera_ && !markers.empty()) tracker_.emplace(*camera_, markers, setup.finder);
     if (probe_ && probe_->isLive() != frames_->isLive())
       throw Error("frames and probe share no clock: both must be live, or both recorded");
-    lost_ = removeUnbegun(folder_);
-    requireNoScan(folder_);
+    const std::vector<fs::path> leftovers = leftoversIn(folder_);
     const auto textOf = [](const fs::path& file) { return file.empty() ? "" : readFile(file); };
     const std::string camera_text = textOf(setup.camera), rig_text = textOf(setup.rig);
     fresh_.emplace(folder_, "frames/000000.pgm");
     makeFolder(folder_);
     if (!camera_text.empty()) writeBeside(folder_ / "camera.yml", camera_text);
     if (!rig_text.empty()) writeBeside(folder_ / "rig.json", rig_text);
+    for (const fs::path& leftover : leftovers) {
+      lost_ += leftover.parent_path() != folder_; // a picture
+      fs::remove(leftover);
+    }
     makeFolder(folder_ / "frames");
     frame_rows_ = std::make_unique<RowFile>(folder_ / "frames.csv", frameListHeader());
     if (tracker_) pose_rows_ = std::make_unique<RowFile>(folder_ / "poses.tum", posesHeader());

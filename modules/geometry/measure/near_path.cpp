@@ -76,7 +76,7 @@ class MarchingFront {
     const double to_a = (at(c) - at(a)).norm();
     lower(c, distance(a) + to_a, a);
     if (!std::isfinite(distance(b))) return;
-    // In the face's plane with a at the origin and b on the x axis, c is above, the source below.
+    // The face's plane has a at the origin and b on the x axis; c is above, the source below.
     const double length = (at(b) - at(a)).norm();
     if (!(length > 0)) return;
     const double cx = (at(c) - at(a)).dot(at(b) - at(a)) / length;

@@ -11,7 +11,7 @@ namespace patina {
 void PassivityStage::apply(Contact& contact, ContactMemory& all) const noexcept {
   PassivityMemory& memory = all.passivity;
   const std::optional<Vec3>& last_tip = all.tip.last;
-  // On a relief slope the contact point is farther away than the potential's depth.
+  // The contact point on a relief slope is farther away than the potential's depth.
   const double stored = contact.touching
                             ? 0.5 * contact.stiffness * (contact.vcp - contact.tip).squaredNorm() /
                                   (1 + contact.slope.squaredNorm())
