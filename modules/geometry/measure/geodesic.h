@@ -20,7 +20,8 @@ struct SurfacePath {
 // 2001) chooses on which side of vertices it begins; each vertex at which the path bends is then
 // passed on its other side if that is shorter, with the funnel algorithm (Lee & Preparata 1984) in
 // the unfolded faces. Between two geodesics whose lengths differ by less than about 0.1 % it may
-// choose the longer one. nullopt if no faces connect the points. Throws Cancelled. Any thread.
+// choose the longer one; above 20,000 faces, where fast marching finds the faces to search, by more
+// if these are slivers. nullopt if no faces connect the points. Throws Cancelled. Any thread.
 std::optional<SurfacePath> geodesicPath(const TriangleMesh& mesh, const Adjacency& neighbours,
                                         const SurfacePoint& from, const SurfacePoint& to,
                                         const Progress& progress = Progress());
